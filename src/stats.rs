@@ -1,0 +1,169 @@
+//! Which stage answered, and at what cost: counters that tell whether the coherence pays.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+
+/// The stage of the coherent query that gave a pair its answer, cheapest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Stage {
+    /// One support pair along the axis of the previous frame proved separation.
+    Axis,
+    /// The features of the previous frame, re-evaluated, certified distance or depth.
+    Feature,
+    /// GJK started from the previous frame's axis and vertices.
+    WarmGjk,
+    /// Penetration depth expanded from the previous frame's features.
+    WarmEpa,
+    /// GJK without a previous frame.
+    ColdGjk,
+    /// Penetration depth without a previous frame.
+    ColdEpa,
+}
+
+impl Stage {
+    /// How many stages there are.
+    pub const COUNT: usize = 6;
+    /// All stages, in the order of [`Stats::answered`].
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::Axis,
+        Self::Feature,
+        Self::WarmGjk,
+        Self::WarmEpa,
+        Self::ColdGjk,
+        Self::ColdEpa,
+    ];
+
+    /// A short name for tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Axis => "axis",
+            Self::Feature => "feature",
+            Self::WarmGjk => "warm GJK",
+            Self::WarmEpa => "warm EPA",
+            Self::ColdGjk => "cold GJK",
+            Self::ColdEpa => "cold EPA",
+        }
+    }
+}
+
+/// What the queries of one dispatcher have cost so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stats {
+    /// Queries answered by each stage, indexed like [`Stage::ALL`].
+    pub answered: [u64; Stage::COUNT],
+    /// GJK iterations and EPA expansions.
+    pub iterations: u64,
+    /// Support queries, each on one shape.
+    pub supports: u64,
+    /// Moves of hill climbing from a vertex to a better neighbour.
+    pub climb_moves: u64,
+    /// Queries that ended by a safeguard (stall, iteration bound, degenerate input) and
+    /// returned their best certified answer.
+    pub fallbacks: u64,
+}
+
+impl Stats {
+    /// Queries answered by any stage.
+    pub fn queries(&self) -> u64 {
+        self.answered.iter().sum()
+    }
+
+    /// The counts since an `earlier` reading.
+    pub fn since(&self, earlier: &Self) -> Self {
+        let mut answered = self.answered;
+        for (now, before) in answered.iter_mut().zip(earlier.answered) {
+            *now = now.saturating_sub(before);
+        }
+        Self {
+            answered,
+            iterations: self.iterations.saturating_sub(earlier.iterations),
+            supports: self.supports.saturating_sub(earlier.supports),
+            climb_moves: self.climb_moves.saturating_sub(earlier.climb_moves),
+            fallbacks: self.fallbacks.saturating_sub(earlier.fallbacks),
+        }
+    }
+}
+
+/// The cost of one query, filled in while it runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
+    /// GJK iterations and EPA expansions.
+    pub iterations: u32,
+    /// Support queries, each on one shape.
+    pub supports: u32,
+    /// Moves of hill climbing.
+    pub climb_moves: u32,
+    /// Safeguards that fired.
+    pub fallbacks: u32,
+}
+
+/// One thread's share of the counters, on cache lines of its own.
+#[derive(Default)]
+#[repr(align(128))]
+struct Shard {
+    answered: [AtomicU64; Stage::COUNT],
+    iterations: AtomicU64,
+    supports: AtomicU64,
+    climb_moves: AtomicU64,
+    fallbacks: AtomicU64,
+}
+
+/// More shards than threads that step one world; two threads that share one may lose counts,
+/// never correctness.
+const SHARDS: usize = 64;
+
+/// Counters that many threads add to without waiting for each other.
+#[derive(Clone)]
+pub(crate) struct SharedStats(Arc<[Shard]>);
+
+impl Default for SharedStats {
+    fn default() -> Self {
+        Self((0..SHARDS).map(|_| Shard::default()).collect())
+    }
+}
+
+thread_local! {
+    static SHARD: usize = {
+        static NEXT: AtomicUsize = AtomicUsize::new(0);
+        NEXT.fetch_add(1, Ordering::Relaxed) % SHARDS
+    };
+}
+
+impl SharedStats {
+    /// Adds one answered query.
+    #[inline]
+    pub fn record(&self, stage: Stage, cost: &Cost) {
+        let shard = &self.0[SHARD.with(|s| *s)];
+        add(&shard.answered[stage as usize], 1);
+        add(&shard.iterations, cost.iterations);
+        add(&shard.supports, cost.supports);
+        add(&shard.climb_moves, cost.climb_moves);
+        add(&shard.fallbacks, cost.fallbacks);
+    }
+
+    /// The sum over all threads.
+    pub fn read(&self) -> Stats {
+        let mut sum = Stats::default();
+        for shard in self.0.iter() {
+            for (total, count) in sum.answered.iter_mut().zip(&shard.answered) {
+                *total += count.load(Ordering::Relaxed);
+            }
+            sum.iterations += shard.iterations.load(Ordering::Relaxed);
+            sum.supports += shard.supports.load(Ordering::Relaxed);
+            sum.climb_moves += shard.climb_moves.load(Ordering::Relaxed);
+            sum.fallbacks += shard.fallbacks.load(Ordering::Relaxed);
+        }
+        sum
+    }
+}
+
+/// A plain load and store: a locked addition costs more than a climb does, and a shard has one
+/// writer.
+#[inline]
+fn add(counter: &AtomicU64, count: u32) {
+    counter.store(
+        counter.load(Ordering::Relaxed) + u64::from(count),
+        Ordering::Relaxed,
+    );
+}
