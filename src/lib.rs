@@ -2,7 +2,17 @@
 #![forbid(unsafe_code)]
 
 pub mod dispatcher;
+pub mod epa;
+pub mod gjk;
+pub mod hull;
+pub mod manifold;
+pub mod pose;
+pub mod primitive;
+pub mod query;
 pub mod stats;
+pub mod support;
+pub mod tolerance;
 
 pub use dispatcher::IsaGjkDispatcher;
+pub use hull::{Hull, HullError};
 pub use stats::{Stage, Stats};

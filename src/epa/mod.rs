@@ -1,0 +1,116 @@
+//! Penetration depth by the expanding polytope algorithm (van den Bergen, *Proximity queries and
+//! penetration depth computation on 3D game objects*, GDC 2001).
+//!
+//! A polytope inside of the Minkowski difference grows by support points along the normal of the
+//! face whose plane is nearest to the origin, until that face cannot be pushed out: its plane
+//! then bounds the depth from above (a support plane) and from below (the nearest face).
+//!
+//! Distances of faces carry a sign, negative where the origin lies beyond the face. So the
+//! origin may lie anywhere at the start, on a vertex, an edge or a face or even outside: no
+//! touching configuration is a special case. All that is asked of the first polytope is volume.
+
+mod polytope;
+mod seed;
+
+use glam::DVec3;
+
+use crate::simplex::{DistanceSubalgorithm, Voronoi};
+use crate::stats::Cost;
+use crate::support::{Cso, CsoVertex, Support};
+use crate::tolerance::DEPTH_GAP;
+use polytope::ExpandingPolytope;
+
+/// Identical fine spheres need a face for every pair of facets; nothing sane needs more.
+const MAX_EXPANSIONS: u32 = 50_000;
+
+/// How deep two shapes overlap, in frame 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Penetration {
+    /// The least translation of shape 2 along `normal` that separates the shapes; negative if
+    /// the normal separates them already.
+    pub depth: f64,
+    /// A lower bound of the depth over all directions.
+    pub lower_bound: f64,
+    /// Unit direction from shape 1 to shape 2.
+    pub normal: DVec3,
+    /// The witness point of shape 1: extreme along the normal.
+    pub on_1: DVec3,
+    /// The witness point of shape 2: extreme against the normal.
+    pub on_2: DVec3,
+    /// The vertices of the face that the witness points come from.
+    pub face: [CsoVertex; 3],
+}
+
+/// Memory for expansions, kept from query to query so that none of them allocates.
+#[derive(Clone, Debug, Default)]
+pub struct EpaScratch {
+    polytope: ExpandingPolytope,
+}
+
+/// The penetration depth, growing from the hull of `seeds`: points of the Minkowski difference,
+/// usually GJK's last simplex or the features of the previous frame.
+///
+/// Stops early, with a negative depth, when a face's normal separates the shapes. `None` if the
+/// Minkowski difference has no volume or is not finite.
+pub fn penetration<A: Support, B: Support>(
+    cso: &Cso<'_, A, B>,
+    seeds: &[CsoVertex],
+    scratch: &mut EpaScratch,
+    cost: &mut Cost,
+) -> Option<Penetration> {
+    let size = cso.size();
+    let polytope = &mut scratch.polytope;
+    polytope.start(seed::tetrahedron(cso, seeds, cost)?, size);
+    let tolerance = DEPTH_GAP * cso.smaller_radius();
+    let mut best: Option<Penetration> = None;
+    let mut lower_bound = f64::NEG_INFINITY;
+    for _ in 0..MAX_EXPANSIONS {
+        let Some(face) = polytope.nearest_face() else {
+            break;
+        };
+        cost.iterations += 1;
+        let (normal, distance) = polytope.plane(face);
+        lower_bound = distance;
+        let corners = polytope.corners(face);
+        let w = cso.support(normal, corners[0].ids, cost);
+        let depth = normal.dot(w.w);
+        if best.is_none_or(|b| depth < b.depth) {
+            best = Some(witness(corners, normal, depth));
+        }
+        if depth < -tolerance || depth - distance <= tolerance {
+            return Some(finish(witness(corners, normal, depth), lower_bound));
+        }
+        // A face that cannot be expanded (a sliver with an unreliable normal) is passed over.
+        if polytope.contains(&w) || !polytope.expand(face, w) {
+            cost.fallbacks += 1;
+            polytope.discard(face);
+        }
+    }
+    cost.fallbacks += 1;
+    best.map(|b| finish(b, lower_bound))
+}
+
+fn finish(mut answer: Penetration, lower_bound: f64) -> Penetration {
+    answer.lower_bound = lower_bound.min(answer.depth);
+    answer
+}
+
+/// The witness points over a face: where the origin projects to, or the nearest point to it.
+fn witness(face: [CsoVertex; 3], normal: DVec3, depth: f64) -> Penetration {
+    // Measured from the foot of the normal, so that the depth does not swamp the position.
+    let foot = normal * depth;
+    let nearest = Voronoi::nearest(&face.map(|v| v.w - foot));
+    let on_1: DVec3 = face
+        .iter()
+        .zip(nearest.lambda)
+        .map(|(vertex, weight)| vertex.on_1 * weight)
+        .sum();
+    Penetration {
+        depth,
+        lower_bound: depth,
+        normal,
+        on_1,
+        on_2: on_1 - foot,
+        face,
+    }
+}

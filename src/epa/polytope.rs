@@ -1,0 +1,233 @@
+//! The polytope that expands: a closed triangulated surface with adjacency, and a heap of faces
+//! by their signed distance from the origin.
+
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+use glam::DVec3;
+
+use crate::support::CsoVertex;
+use crate::tolerance::COPLANAR;
+
+/// An edge of a face: `edge` is the index of the corner where it starts.
+#[derive(Clone, Copy, Debug)]
+struct EdgeRef {
+    face: u32,
+    edge: u8,
+}
+
+#[derive(Clone, Debug)]
+struct Face {
+    corners: [u32; 3],
+    /// The same edge as seen from the neighbouring face.
+    across: [EdgeRef; 3],
+    normal: DVec3,
+    distance: f64,
+    alive: bool,
+}
+
+/// A heap entry; the heap's greatest is the nearest face, and of equally near ones the oldest.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    distance: f64,
+    face: u32,
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Candidate {}
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Candidate {
+    fn cmp(&self, other: &Self) -> Ordering {
+        other
+            .distance
+            .total_cmp(&self.distance)
+            .then(other.face.cmp(&self.face))
+    }
+}
+
+/// See the module documentation. All vectors are cleared, never freed, between queries.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ExpandingPolytope {
+    vertices: Vec<CsoVertex>,
+    faces: Vec<Face>,
+    heap: BinaryHeap<Candidate>,
+    horizon: Vec<EdgeRef>,
+    visible: Vec<u32>,
+    stack: Vec<EdgeRef>,
+    coplanar: f64,
+}
+
+impl ExpandingPolytope {
+    /// Starts over from a tetrahedron with volume. `size` is what tolerances are relative to.
+    pub fn start(&mut self, corners: [CsoVertex; 4], size: f64) {
+        self.vertices.clear();
+        self.faces.clear();
+        self.heap.clear();
+        self.coplanar = COPLANAR * size;
+        let [a, b, c, d] = corners.map(|v| v.w);
+        let outward = (b - a).cross(c - a).dot(d - a) < 0.0;
+        self.vertices.extend(if outward {
+            corners
+        } else {
+            [corners[0], corners[2], corners[1], corners[3]]
+        });
+        // With corner 3 below (0, 1, 2), these turn counter-clockwise seen from outside.
+        let edge = |face, edge| EdgeRef { face, edge };
+        self.add([0, 1, 2], [edge(1, 0), edge(2, 0), edge(3, 0)]);
+        self.add([1, 0, 3], [edge(0, 0), edge(3, 2), edge(2, 1)]);
+        self.add([2, 1, 3], [edge(0, 1), edge(1, 2), edge(3, 1)]);
+        self.add([0, 2, 3], [edge(0, 2), edge(2, 2), edge(1, 1)]);
+    }
+
+    /// The living face whose plane is nearest to the origin.
+    pub fn nearest_face(&mut self) -> Option<u32> {
+        while let Some(top) = self.heap.peek() {
+            if self.faces[top.face as usize].alive {
+                return Some(top.face);
+            }
+            self.heap.pop();
+        }
+        None
+    }
+
+    /// Outward unit normal of a face, and signed distance of the origin below its plane.
+    pub fn plane(&self, face: u32) -> (DVec3, f64) {
+        let face = &self.faces[face as usize];
+        (face.normal, face.distance)
+    }
+
+    pub fn corners(&self, face: u32) -> [CsoVertex; 3] {
+        self.faces[face as usize]
+            .corners
+            .map(|v| self.vertices[v as usize])
+    }
+
+    /// Whether the polytope already has this vertex.
+    pub fn contains(&self, vertex: &CsoVertex) -> bool {
+        self.vertices.iter().any(|v| v.w == vertex.w)
+    }
+
+    /// Takes a face out of the search, not out of the surface.
+    pub fn discard(&mut self, face: u32) {
+        if self.heap.peek().is_some_and(|top| top.face == face) {
+            self.heap.pop();
+        }
+    }
+
+    /// Replaces all faces that see `vertex` by a cone from their horizon to it. `false`, and
+    /// nothing changed, if rounding leaves no proper horizon.
+    pub fn expand(&mut self, face: u32, vertex: CsoVertex) -> bool {
+        self.find_horizon(face, vertex.w);
+        if !self.horizon_is_closed() {
+            for f in self.visible.drain(..) {
+                self.faces[f as usize].alive = true;
+            }
+            return false;
+        }
+        let apex = self.vertices.len() as u32;
+        self.vertices.push(vertex);
+        let first = self.faces.len() as u32;
+        let count = self.horizon.len() as u32;
+        for i in 0..count {
+            let outside = self.horizon[i as usize];
+            let [a, b] = self.edge_corners(outside);
+            let next = EdgeRef {
+                face: first + (i + 1) % count,
+                edge: 2,
+            };
+            let previous = EdgeRef {
+                face: first + (i + count - 1) % count,
+                edge: 1,
+            };
+            // Seen from the new face the shared edge runs the other way.
+            self.add([b, a, apex], [outside, next, previous]);
+            self.faces[outside.face as usize].across[outside.edge as usize] = EdgeRef {
+                face: first + i,
+                edge: 0,
+            };
+        }
+        true
+    }
+
+    /// The corners where an edge starts and ends, in its own face's sense.
+    fn edge_corners(&self, edge: EdgeRef) -> [u32; 2] {
+        let corners = self.faces[edge.face as usize].corners;
+        let k = edge.edge as usize;
+        [corners[k], corners[(k + 1) % 3]]
+    }
+
+    /// Collects the edges around the faces visible from `w`, in order, each as seen from the
+    /// face that stays; the visible faces are marked dead.
+    fn find_horizon(&mut self, face: u32, w: DVec3) {
+        self.horizon.clear();
+        self.visible.clear();
+        self.stack.clear();
+        self.kill(face);
+        for k in (0..3).rev() {
+            self.stack.push(self.faces[face as usize].across[k]);
+        }
+        while let Some(edge) = self.stack.pop() {
+            let f = &self.faces[edge.face as usize];
+            if !f.alive {
+                continue;
+            }
+            if f.normal.dot(w) - f.distance <= -self.coplanar {
+                self.horizon.push(edge);
+                continue;
+            }
+            let across = f.across;
+            self.kill(edge.face);
+            let k = edge.edge as usize;
+            self.stack.push(across[(k + 2) % 3]);
+            self.stack.push(across[(k + 1) % 3]);
+        }
+    }
+
+    fn kill(&mut self, face: u32) {
+        self.faces[face as usize].alive = false;
+        self.visible.push(face);
+    }
+
+    /// Whether the horizon is one closed loop through distinct vertices.
+    fn horizon_is_closed(&self) -> bool {
+        let count = self.horizon.len();
+        count >= 3
+            && (0..count).all(|i| {
+                // Seen from outside of the visible region the loop runs backwards.
+                let [start, _] = self.edge_corners(self.horizon[i]);
+                let [_, end] = self.edge_corners(self.horizon[(i + 1) % count]);
+                start == end
+            })
+    }
+
+    fn add(&mut self, corners: [u32; 3], across: [EdgeRef; 3]) {
+        let [a, b, c] = corners.map(|v| self.vertices[v as usize].w);
+        // A face without area has no plane: it stays in the surface, never in the search.
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        let degenerate = normal == DVec3::ZERO;
+        let distance = if degenerate {
+            f64::INFINITY
+        } else {
+            normal.dot(a).min(normal.dot(b)).min(normal.dot(c))
+        };
+        let face = self.faces.len() as u32;
+        self.faces.push(Face {
+            corners,
+            across,
+            normal,
+            distance,
+            alive: true,
+        });
+        if !degenerate {
+            self.heap.push(Candidate { distance, face });
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! A first tetrahedron with volume inside of the Minkowski difference.
+
+use glam::DVec3;
+
+use crate::stats::Cost;
+use crate::support::{Cso, CsoVertex, Support};
+use crate::tolerance::DEGENERATE;
+
+/// A seed that spans at least this share of the pair's size is taken as it is; below, support
+/// points are tried too, and the best of all is taken.
+const GOOD: f64 = 1e-3;
+
+/// Four points with volume: from `seeds` where they have any, else from support points.
+pub(super) fn tetrahedron<A: Support, B: Support>(
+    cso: &Cso<'_, A, B>,
+    seeds: &[CsoVertex],
+    cost: &mut Cost,
+) -> Option<[CsoVertex; 4]> {
+    let search = Search {
+        cso,
+        seeds,
+        size: cso.size(),
+    };
+    let first = match seeds.first() {
+        Some(seed) => *seed,
+        None => cso.support(DVec3::X, cso.start(DVec3::X), cost),
+    };
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| [axis, -axis]);
+    let second = search.farthest(axes.as_flattened(), cost, |p| (p - first.w).length())?;
+
+    let along = (second.w - first.w).normalize();
+    let (u, v) = along.any_orthonormal_pair();
+    let third = search.farthest(&[u, -u, v, -v], cost, |p| {
+        (p - first.w).reject_from_normalized(along).length()
+    })?;
+
+    let normal = along.cross(third.w - first.w).try_normalize()?;
+    let fourth = search.farthest(&[normal, -normal], cost, |p| {
+        normal.dot(p - first.w).abs()
+    })?;
+    Some([first, second, third, fourth])
+}
+
+struct Search<'a, 's, A, B> {
+    cso: &'a Cso<'s, A, B>,
+    seeds: &'a [CsoVertex],
+    size: f64,
+}
+
+impl<A: Support, B: Support> Search<'_, '_, A, B> {
+    /// The point for which `measure` is largest, if that is not degenerate.
+    fn farthest(
+        &self,
+        directions: &[DVec3],
+        cost: &mut Cost,
+        measure: impl Fn(DVec3) -> f64,
+    ) -> Option<CsoVertex> {
+        let mut best = None;
+        let mut largest = DEGENERATE * self.size;
+        let mut consider = |candidate: CsoVertex| {
+            let m = measure(candidate.w);
+            if m > largest {
+                largest = m;
+                best = Some(candidate);
+            }
+            m > GOOD * self.size
+        };
+        let mut good = false;
+        for seed in self.seeds {
+            good |= consider(*seed);
+        }
+        for &direction in directions {
+            if good {
+                break;
+            }
+            let start = self.cso.start(direction);
+            good = consider(self.cso.support(direction, start, cost));
+        }
+        best
+    }
+}

@@ -1,0 +1,152 @@
+//! Building and validating hulls.
+
+use glam::{DVec3, Vec3};
+
+use super::climb;
+use super::faces::Faces;
+use super::graph::EdgeGraph;
+use super::start::StartTable;
+use super::{Hull, HullError};
+use crate::stats::Cost;
+use crate::support::{FaceId, Polytope};
+use crate::tolerance::{CONVEXITY, THINNEST};
+
+/// The most vertices a hull may have: its at most `2 n - 4` faces must have 16-bit names.
+const MAX_VERTICES: usize = 32_768;
+
+impl Hull {
+    /// The convex hull of a point cloud, by parry's hull builder.
+    ///
+    /// Points inside the hull are dropped, so that vertex ids are not indices into `points`.
+    ///
+    /// # Errors
+    /// Names what is wrong with the points, see [`HullError`].
+    ///
+    /// ```
+    /// use glam::Vec3;
+    /// use isa_gjk::Hull;
+    /// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, Vec3::splat(0.1)];
+    /// let hull = Hull::from_points(&corners)?;
+    /// assert_eq!(hull.points().len(), 4); // the last point is inside
+    /// # Ok::<(), isa_gjk::HullError>(())
+    /// ```
+    pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
+        if points.len() < 4 {
+            return Err(HullError::TooFewPoints);
+        }
+        require_finite(points)?;
+        let (vertices, triangles) = parry3d::transformation::try_convex_hull(points)
+            .map_err(|_| HullError::BuilderFailed)?;
+        Self::from_triangles(vertices, &triangles)
+    }
+
+    /// From the triangulated surface of a convex polytope, counter-clockwise from outside.
+    ///
+    /// Vertex ids are indices into `points`.
+    ///
+    /// # Errors
+    /// Names what is wrong with the surface, see [`HullError`].
+    pub fn from_triangles(points: Vec<Vec3>, triangles: &[[u32; 3]]) -> Result<Self, HullError> {
+        if points.len() < 4 {
+            return Err(HullError::TooFewPoints);
+        }
+        if points.len() > MAX_VERTICES {
+            return Err(HullError::TooManyPoints);
+        }
+        require_finite(&points)?;
+        require_triangles(&points, triangles)?;
+        let graph = EdgeGraph::new(points.len(), triangles)?;
+        let (center, radius) = center_and_radius(&points, triangles)?;
+        require_convex(&points, triangles, &graph, radius)?;
+
+        let mut cost = Cost::default();
+        let mut support = |dir, start| climb::support(&points, &graph, radius, dir, start, &mut cost);
+        let faces = Faces::new(&points, triangles, radius, |normal, start| {
+            normal.dot(support(normal, start).0)
+        });
+        let start = StartTable::new(points.len(), |dir, start| support(dir, start).1);
+        let hull = Self {
+            points: points.into(),
+            graph,
+            faces,
+            start,
+            center,
+            radius,
+        };
+        hull.require_interior()?;
+        Ok(hull)
+    }
+
+    /// The centre must be clearly inside of every face.
+    fn require_interior(&self) -> Result<(), HullError> {
+        let deep_inside = (0..self.faces.len() as FaceId).all(|f| {
+            self.face_offset(f) - self.face_normal(f).dot(self.center) > THINNEST * self.radius
+        });
+        deep_inside.then_some(()).ok_or(HullError::Flat)
+    }
+}
+
+fn require_finite(points: &[Vec3]) -> Result<(), HullError> {
+    match points.iter().position(|p| !p.is_finite()) {
+        Some(i) => Err(HullError::NotFinite(i)),
+        None => Ok(()),
+    }
+}
+
+fn require_triangles(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), HullError> {
+    let bad = |&[a, b, c]: &[u32; 3]| {
+        a == b || b == c || c == a || [a, b, c].iter().any(|&v| v as usize >= points.len())
+    };
+    match triangles.iter().position(bad) {
+        Some(i) => Err(HullError::BadTriangle(i)),
+        None => Ok(()),
+    }
+}
+
+/// The centre of volume, and the largest distance of a vertex from it.
+fn center_and_radius(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(DVec3, f64), HullError> {
+    let origin = points[0].as_dvec3();
+    let (mut volume, mut moment) = (0.0, DVec3::ZERO);
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|v| points[v as usize].as_dvec3() - origin);
+        let v = a.dot(b.cross(c));
+        volume += v;
+        moment += (a + b + c) * v;
+    }
+    if volume < 0.0 {
+        return Err(HullError::InsideOut);
+    }
+    let center = origin + moment / (4.0 * volume);
+    if !center.is_finite() {
+        return Err(HullError::Flat);
+    }
+    let radius = points
+        .iter()
+        .map(|p| (p.as_dvec3() - center).length_squared())
+        .fold(0.0, f64::max)
+        .sqrt();
+    Ok((center, radius))
+}
+
+/// No neighbour of a triangle's vertices lies above its plane, beyond rounding. For a closed
+/// surface, convexity around every vertex is convexity.
+fn require_convex(
+    points: &[Vec3],
+    triangles: &[[u32; 3]],
+    graph: &EdgeGraph,
+    radius: f64,
+) -> Result<(), HullError> {
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|v| points[v as usize].as_dvec3());
+        let area = (b - a).cross(c - a);
+        let limit = CONVEXITY * radius * area.length();
+        for &v in triangle {
+            for &w in graph.neighbors(v) {
+                if area.dot(points[w as usize].as_dvec3() - a) > limit {
+                    return Err(HullError::NotConvex(w.into()));
+                }
+            }
+        }
+    }
+    Ok(())
+}

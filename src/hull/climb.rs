@@ -1,0 +1,98 @@
+//! Support by hill climbing on the edge graph (Cameron, *Enhancing GJK: computing minimum and
+//! penetration distances between convex polyhedra*, ICRA 1997), with the base case corrected.
+//!
+//! From a vertex, move to the best neighbour while one is better. On a convex hull a vertex
+//! with no better neighbour is extreme, unless it ties with all of its neighbours: a vertex in
+//! the interior of a flat face may be the *worst* vertex in the direction of the face's inward
+//! normal. A vertex reached by an improving move has a strictly worse neighbour, so that only
+//! the start can be such a vertex. If it is, its plateau is searched for a vertex with a
+//! neighbour off the plateau: a better one to climb from, or a worse one, which proves that the
+//! plateau is the maximum.
+//!
+//! Promise: with `s` the returned vertex, `h(d) - d·s <= PLATEAU * radius * |d|` wherever the
+//! hull is convex to rounding.
+
+use glam::{DVec3, Vec3};
+
+use super::graph::EdgeGraph;
+use crate::stats::Cost;
+use crate::support::VertexId;
+use crate::tolerance::PLATEAU;
+
+/// The extreme vertex in direction `dir`, climbing from `start`.
+#[inline]
+pub(super) fn support(
+    points: &[Vec3],
+    graph: &EdgeGraph,
+    radius: f64,
+    dir: DVec3,
+    start: VertexId,
+    cost: &mut Cost,
+) -> (DVec3, VertexId) {
+    cost.supports += 1;
+    let mut best = start;
+    let mut position = points[best as usize].as_dvec3();
+    let mut value = dir.dot(position);
+    let start_value = value;
+    let mut worst_neighbor = f64::INFINITY;
+    loop {
+        let mut next = best;
+        for &w in graph.neighbors(best) {
+            let candidate = points[w as usize].as_dvec3();
+            let d = dir.dot(candidate);
+            worst_neighbor = worst_neighbor.min(d);
+            if d > value {
+                value = d;
+                position = candidate;
+                next = w.into();
+            }
+        }
+        if next == best {
+            break;
+        }
+        best = next;
+        cost.climb_moves += 1;
+    }
+    // `worst_neighbor` saw all neighbours of the start: if one of them lies off the plateau,
+    // or the climb left it upwards, the end is a maximum.
+    let rise = value - start_value;
+    let drop = start_value - worst_neighbor;
+    let scale = PLATEAU * radius;
+    if rise.max(drop) * rise.max(drop) <= scale * scale * dir.length_squared() {
+        if let Some(exit) = leave_plateau(points, graph, scale * dir.length(), dir, best) {
+            cost.climb_moves += 1;
+            return support(points, graph, radius, dir, exit, cost);
+        }
+    }
+    (position, best)
+}
+
+/// A vertex above the plateau around `start`, or `None` if the plateau is the maximum.
+#[cold]
+fn leave_plateau(
+    points: &[Vec3],
+    graph: &EdgeGraph,
+    tie: f64,
+    dir: DVec3,
+    start: VertexId,
+) -> Option<VertexId> {
+    let level = dir.dot(points[start as usize].as_dvec3());
+    let mut seen = vec![false; points.len()];
+    let mut stack = vec![start];
+    seen[start as usize] = true;
+    while let Some(v) = stack.pop() {
+        for &w in graph.neighbors(v) {
+            let d = dir.dot(points[w as usize].as_dvec3());
+            if d > level + tie {
+                return Some(w.into());
+            }
+            if d < level - tie {
+                return None;
+            }
+            if !std::mem::replace(&mut seen[w as usize], true) {
+                stack.push(w.into());
+            }
+        }
+    }
+    None
+}

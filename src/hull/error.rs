@@ -1,0 +1,48 @@
+//! Why a hull could not be built.
+
+use std::fmt;
+
+/// What is wrong with the points or triangles that a hull was to be built from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum HullError {
+    /// Fewer than four points.
+    TooFewPoints,
+    /// More points than 16-bit vertex ids can name.
+    TooManyPoints,
+    /// The point with this index has a NaN or infinite coordinate.
+    NotFinite(usize),
+    /// All points lie in a plane, on a line or in one place, up to rounding.
+    Flat,
+    /// A triangle refers to a vertex that does not exist, or twice to the same one.
+    BadTriangle(usize),
+    /// The vertex with this index belongs to no triangle.
+    LooseVertex(usize),
+    /// The surface is not closed, or an edge has more than two triangles, or two surfaces touch.
+    NotManifold,
+    /// The triangles turn clockwise seen from outside.
+    InsideOut,
+    /// The surface is not convex: this vertex lies above the plane of a neighbouring triangle.
+    NotConvex(usize),
+    /// The hull builder gave up on the points.
+    BuilderFailed,
+}
+
+impl fmt::Display for HullError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooFewPoints => write!(f, "a hull needs at least four points"),
+            Self::TooManyPoints => write!(f, "a hull may have at most 65535 vertices"),
+            Self::NotFinite(i) => write!(f, "point {i} is not finite"),
+            Self::Flat => write!(f, "the points span no volume"),
+            Self::BadTriangle(i) => write!(f, "triangle {i} has missing or repeated vertices"),
+            Self::LooseVertex(i) => write!(f, "vertex {i} belongs to no triangle"),
+            Self::NotManifold => write!(f, "the triangles do not form one closed surface"),
+            Self::InsideOut => write!(f, "the triangles turn clockwise seen from outside"),
+            Self::NotConvex(i) => write!(f, "the surface is not convex at vertex {i}"),
+            Self::BuilderFailed => write!(f, "no convex hull of the points could be built"),
+        }
+    }
+}
+
+impl std::error::Error for HullError {}

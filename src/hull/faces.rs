@@ -1,0 +1,280 @@
+//! Faces of a hull: coplanar triangles joined to polygons, with their planes.
+
+use glam::{DVec3, Vec3};
+
+use crate::support::{FaceId, VertexId};
+use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS};
+
+/// Polygons and the faces around each vertex, both in compressed rows.
+#[derive(Clone, Debug)]
+pub(super) struct Faces {
+    planes: Box<[Plane]>,
+    first: Box<[u32]>,
+    vertices: Box<[u16]>,
+    first_at_vertex: Box<[u32]>,
+    at_vertex: Box<[u16]>,
+}
+
+/// A supporting plane. The normal is rounded to f32; the offset is exact for that normal.
+#[derive(Clone, Copy, Debug)]
+struct Plane {
+    normal: Vec3,
+    offset: f64,
+}
+
+impl Faces {
+    /// Joins the `triangles`. `offset` gives the largest `normal · p` over the hull, searching
+    /// from a vertex.
+    pub fn new(
+        points: &[Vec3],
+        triangles: &[[u32; 3]],
+        radius: f64,
+        mut offset: impl FnMut(DVec3, VertexId) -> f64,
+    ) -> Self {
+        let regions = Regions::grow(points, triangles, radius);
+        let mut faces = Rows::default();
+        let mut planes = Vec::new();
+        let mut face_of = vec![0_u16; triangles.len()];
+        for region in regions.all {
+            for polygon in polygons(triangles, &region) {
+                for &t in &polygon.triangles {
+                    face_of[t] = planes.len() as u16;
+                }
+                let normal = polygon_normal(points, &polygon.vertices).as_vec3();
+                let start = polygon.vertices[0].into();
+                planes.push(Plane {
+                    normal,
+                    offset: offset(normal.as_dvec3(), start),
+                });
+                faces.push(&polygon.vertices);
+            }
+        }
+        let at = faces_at_vertices(points.len(), triangles, &face_of);
+        Self {
+            planes: planes.into(),
+            first: faces.first.into(),
+            vertices: faces.items.into(),
+            first_at_vertex: at.first.into(),
+            at_vertex: at.items.into(),
+        }
+    }
+
+    pub fn len(&self) -> usize {
+        self.planes.len()
+    }
+
+    #[inline]
+    pub fn normal(&self, face: FaceId) -> DVec3 {
+        self.planes[face as usize].normal.as_dvec3()
+    }
+
+    #[inline]
+    pub fn offset(&self, face: FaceId) -> f64 {
+        self.planes[face as usize].offset
+    }
+
+    #[inline]
+    pub fn polygon(&self, face: FaceId) -> &[u16] {
+        let f = face as usize;
+        &self.vertices[self.first[f] as usize..self.first[f + 1] as usize]
+    }
+
+    #[inline]
+    pub fn most_aligned(&self, vertex: VertexId, dir: DVec3) -> FaceId {
+        let v = vertex as usize;
+        let row = self.first_at_vertex[v] as usize..self.first_at_vertex[v + 1] as usize;
+        let mut best = (f64::NEG_INFINITY, 0);
+        for &face in &self.at_vertex[row] {
+            let aligned = self.normal(face.into()).dot(dir);
+            if aligned > best.0 {
+                best = (aligned, face);
+            }
+        }
+        best.1.into()
+    }
+
+    pub fn heap_bytes(&self) -> usize {
+        size_of_val(&*self.planes)
+            + size_of_val(&*self.first)
+            + size_of_val(&*self.vertices)
+            + size_of_val(&*self.first_at_vertex)
+            + size_of_val(&*self.at_vertex)
+    }
+}
+
+/// Compressed sparse rows while they grow.
+struct Rows {
+    first: Vec<u32>,
+    items: Vec<u16>,
+}
+
+impl Default for Rows {
+    fn default() -> Self {
+        Self {
+            first: vec![0],
+            items: Vec::new(),
+        }
+    }
+}
+
+impl Rows {
+    fn push(&mut self, row: &[u16]) {
+        self.items.extend_from_slice(row);
+        self.first.push(self.items.len() as u32);
+    }
+}
+
+/// Twice the area vector of a triangle.
+fn area_vector(points: &[Vec3], triangle: [u32; 3]) -> DVec3 {
+    let [a, b, c] = triangle.map(|v| points[v as usize].as_dvec3());
+    (b - a).cross(c - a)
+}
+
+/// Twice the area vector of a polygon, normalised (Newell's method, about its first vertex).
+fn polygon_normal(points: &[Vec3], polygon: &[u16]) -> DVec3 {
+    let at = |i: usize| points[polygon[i] as usize].as_dvec3();
+    let origin = at(0);
+    let sum: DVec3 = (1..polygon.len() - 1)
+        .map(|i| (at(i) - origin).cross(at(i + 1) - origin))
+        .sum();
+    sum.normalize_or(DVec3::Z)
+}
+
+/// Sets of triangles that lie in one plane each.
+struct Regions {
+    all: Vec<Vec<usize>>,
+}
+
+impl Regions {
+    /// Grows from the largest triangles, whose normals are the most reliable.
+    fn grow(points: &[Vec3], triangles: &[[u32; 3]], radius: f64) -> Self {
+        let areas: Vec<DVec3> = triangles.iter().map(|&t| area_vector(points, t)).collect();
+        let neighbors = triangle_neighbors(triangles);
+        let mut order: Vec<usize> = (0..triangles.len()).collect();
+        order.sort_by(|&a, &b| {
+            let (a, b) = (areas[a].length_squared(), areas[b].length_squared());
+            b.total_cmp(&a)
+        });
+        let mut taken = vec![false; triangles.len()];
+        let mut all = Vec::new();
+        for seed in order {
+            if taken[seed] {
+                continue;
+            }
+            taken[seed] = true;
+            let normal = areas[seed].normalize_or_zero();
+            let level = normal.dot(points[triangles[seed][0] as usize].as_dvec3());
+            let mut region = vec![seed];
+            let mut next = 0;
+            while next < region.len() {
+                for t in neighbors[region[next]] {
+                    let flat = triangles[t].iter().all(|&v| {
+                        let height = normal.dot(points[v as usize].as_dvec3()) - level;
+                        height.abs() <= FACE_FLATNESS * radius
+                    });
+                    // A triangle without area has no direction; its neighbours decide.
+                    let turned = normal.dot(areas[t]) < FACE_ANGLE_COS * areas[t].length();
+                    if !taken[t] && flat && !turned {
+                        taken[t] = true;
+                        region.push(t);
+                    }
+                }
+                next += 1;
+            }
+            all.push(region);
+        }
+        Self { all }
+    }
+}
+
+/// For each triangle the three that share an edge with it. The surface is closed.
+fn triangle_neighbors(triangles: &[[u32; 3]]) -> Vec<[usize; 3]> {
+    let mut edges: Vec<(u32, u32, usize, usize)> = Vec::with_capacity(triangles.len() * 3);
+    for (t, triangle) in triangles.iter().enumerate() {
+        for k in 0..3 {
+            let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
+            edges.push((a.min(b), a.max(b), t, k));
+        }
+    }
+    edges.sort_unstable();
+    let mut neighbors = vec![[0; 3]; triangles.len()];
+    for pair in edges.chunks_exact(2) {
+        let [(_, _, t0, k0), (_, _, t1, k1)] = [pair[0], pair[1]];
+        neighbors[t0][k0] = t1;
+        neighbors[t1][k1] = t0;
+    }
+    neighbors
+}
+
+/// A polygon and the triangles it was made from.
+struct Polygon {
+    vertices: Vec<u16>,
+    triangles: Vec<usize>,
+}
+
+/// The boundary of a region as one polygon; triangle by triangle where it is not one loop.
+fn polygons(triangles: &[[u32; 3]], region: &[usize]) -> Vec<Polygon> {
+    let single = |t: usize| Polygon {
+        vertices: triangles[t].map(|v| v as u16).into(),
+        triangles: vec![t],
+    };
+    if let [t] = region {
+        return vec![single(*t)];
+    }
+    match boundary_loop(triangles, region) {
+        Some(vertices) => vec![Polygon {
+            vertices,
+            triangles: region.into(),
+        }],
+        None => region.iter().map(|&t| single(t)).collect(),
+    }
+}
+
+fn boundary_loop(triangles: &[[u32; 3]], region: &[usize]) -> Option<Vec<u16>> {
+    let mut edges: Vec<(u32, u32)> = region
+        .iter()
+        .flat_map(|&t| {
+            let [a, b, c] = triangles[t];
+            [(a, b), (b, c), (c, a)]
+        })
+        .collect();
+    edges.sort_unstable();
+    let boundary: Vec<(u32, u32)> = edges
+        .iter()
+        .copied()
+        .filter(|&(a, b)| edges.binary_search(&(b, a)).is_err())
+        .collect();
+    let start = boundary.first()?.0;
+    let mut polygon = Vec::with_capacity(boundary.len());
+    let mut at = start;
+    for _ in 0..boundary.len() {
+        polygon.push(at as u16);
+        let i = boundary.partition_point(|&(a, _)| a < at);
+        at = boundary.get(i).filter(|&&(a, _)| a == at)?.1;
+        if at == start {
+            break;
+        }
+    }
+    (polygon.len() == boundary.len() && at == start).then_some(polygon)
+}
+
+/// The faces that each vertex belongs to, also where it lies inside of a face.
+fn faces_at_vertices(count: usize, triangles: &[[u32; 3]], face_of: &[u16]) -> Rows {
+    let mut pairs: Vec<(u32, u16)> = triangles
+        .iter()
+        .zip(face_of)
+        .flat_map(|(triangle, &face)| triangle.map(|v| (v, face)))
+        .collect();
+    pairs.sort_unstable();
+    pairs.dedup();
+    let mut rows = Rows::default();
+    let mut next = 0;
+    for v in 0..count as u32 {
+        while pairs.get(next).is_some_and(|&(at, _)| at == v) {
+            rows.items.push(pairs[next].1);
+            next += 1;
+        }
+        rows.first.push(rows.items.len() as u32);
+    }
+    rows
+}

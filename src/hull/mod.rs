@@ -1,0 +1,134 @@
+//! Convex hulls prepared for coherent queries: edge graph, faces and start-vertex table.
+
+mod build;
+mod climb;
+mod error;
+mod faces;
+mod graph;
+mod start;
+
+pub use error::HullError;
+
+use glam::{DVec3, Vec3};
+
+use crate::stats::Cost;
+use crate::support::{FaceId, Polytope, Support, VertexId};
+use faces::Faces;
+use graph::EdgeGraph;
+use start::StartTable;
+
+/// A convex polytope with everything precomputed that a query needs.
+///
+/// Lengths are in the units of the points it was built from, positions in their frame.
+#[derive(Clone, Debug)]
+pub struct Hull {
+    points: Box<[Vec3]>,
+    graph: EdgeGraph,
+    faces: Faces,
+    start: StartTable,
+    center: DVec3,
+    radius: f64,
+}
+
+impl Hull {
+    /// The vertices, in the order in which they are named by ids.
+    pub fn points(&self) -> &[Vec3] {
+        &self.points
+    }
+
+    /// The number of faces after coplanar triangles were joined.
+    pub fn face_count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// The neighbours of a vertex on the triangulated surface.
+    pub fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> + '_ {
+        self.graph.neighbors(vertex).iter().map(|&v| v.into())
+    }
+
+    /// Bytes of heap memory held.
+    pub fn heap_bytes(&self) -> usize {
+        size_of_val(&*self.points)
+            + self.graph.heap_bytes()
+            + self.faces.heap_bytes()
+            + self.start.heap_bytes()
+    }
+}
+
+impl Support for Hull {
+    #[inline]
+    fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
+        climb::support(&self.points, &self.graph, self.radius, dir, start, cost)
+    }
+
+    #[inline]
+    fn start(&self, dir: DVec3) -> VertexId {
+        self.start.lookup(dir)
+    }
+
+    #[inline]
+    fn valid_start(&self, vertex: VertexId) -> VertexId {
+        if (vertex as usize) < self.points.len() {
+            vertex
+        } else {
+            0
+        }
+    }
+
+    #[inline]
+    fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    #[inline]
+    fn radius(&self) -> f64 {
+        self.radius
+    }
+}
+
+impl Polytope for Hull {
+    #[inline]
+    fn vertex(&self, vertex: VertexId) -> DVec3 {
+        self.points[vertex as usize].as_dvec3()
+    }
+
+    #[inline]
+    fn has_face(&self, face: FaceId) -> bool {
+        (face as usize) < self.faces.len()
+    }
+
+    #[inline]
+    fn face_normal(&self, face: FaceId) -> DVec3 {
+        self.faces.normal(face)
+    }
+
+    #[inline]
+    fn face_offset(&self, face: FaceId) -> f64 {
+        self.faces.offset(face)
+    }
+
+    #[inline]
+    fn face_len(&self, face: FaceId) -> usize {
+        self.faces.polygon(face).len()
+    }
+
+    #[inline]
+    fn face_vertex(&self, face: FaceId, i: usize) -> VertexId {
+        self.faces.polygon(face)[i].into()
+    }
+
+    #[inline]
+    fn face_at(&self, vertex: VertexId, dir: DVec3) -> FaceId {
+        self.faces.most_aligned(vertex, dir)
+    }
+
+    #[inline]
+    fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32> {
+        self.graph.edge_id(from, to)
+    }
+
+    #[inline]
+    fn edge(&self, id: u32) -> Option<[VertexId; 2]> {
+        self.graph.edge(id)
+    }
+}

@@ -1,0 +1,157 @@
+//! A box centred at its origin, with the supports and faces of a polytope in closed form.
+
+use glam::DVec3;
+
+use crate::stats::Cost;
+use crate::support::{FaceId, Polytope, Support, VertexId};
+
+/// A box by its half extents. Bit `k` of a vertex id is set where coordinate `k` is positive;
+/// face `2 k` looks along axis `k`, face `2 k + 1` against it.
+#[derive(Clone, Copy, Debug)]
+pub struct CuboidPolytope {
+    half_extents: DVec3,
+    radius: f64,
+}
+
+/// The corners of each face, counter-clockwise from outside.
+const FACES: [[u8; 4]; 6] = [
+    [1, 3, 7, 5],
+    [0, 4, 6, 2],
+    [2, 6, 7, 3],
+    [0, 1, 5, 4],
+    [4, 5, 7, 6],
+    [0, 2, 3, 1],
+];
+
+impl CuboidPolytope {
+    /// A box with these half extents.
+    pub fn new(half_extents: DVec3) -> Self {
+        Self {
+            half_extents,
+            radius: half_extents.length(),
+        }
+    }
+
+    #[inline]
+    fn corner(dir: DVec3) -> VertexId {
+        u32::from(dir.x > 0.0) | u32::from(dir.y > 0.0) << 1 | u32::from(dir.z > 0.0) << 2
+    }
+}
+
+impl Support for CuboidPolytope {
+    #[inline]
+    fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
+        cost.supports += 1;
+        // Where a coordinate of the direction is zero both signs tie: stay at the start, so
+        // that a resting box does not swap its vertices.
+        let mut vertex = Self::corner(dir);
+        for k in 0..3 {
+            if dir[k] == 0.0 {
+                vertex = vertex & !(1 << k) | start & (1 << k);
+            }
+        }
+        (self.vertex(vertex), vertex)
+    }
+
+    #[inline]
+    fn start(&self, dir: DVec3) -> VertexId {
+        Self::corner(dir)
+    }
+
+    #[inline]
+    fn valid_start(&self, vertex: VertexId) -> VertexId {
+        vertex & 7
+    }
+
+    #[inline]
+    fn center(&self) -> DVec3 {
+        DVec3::ZERO
+    }
+
+    #[inline]
+    fn radius(&self) -> f64 {
+        self.radius
+    }
+}
+
+impl Polytope for CuboidPolytope {
+    #[inline]
+    fn vertex(&self, vertex: VertexId) -> DVec3 {
+        let h = self.half_extents;
+        let sign = |k: u32, x: f64| if vertex >> k & 1 == 1 { x } else { -x };
+        DVec3::new(sign(0, h.x), sign(1, h.y), sign(2, h.z))
+    }
+
+    #[inline]
+    fn has_face(&self, face: FaceId) -> bool {
+        face < 6
+    }
+
+    #[inline]
+    fn face_normal(&self, face: FaceId) -> DVec3 {
+        let mut normal = DVec3::ZERO;
+        normal[face as usize / 2] = if face & 1 == 0 { 1.0 } else { -1.0 };
+        normal
+    }
+
+    #[inline]
+    fn face_offset(&self, face: FaceId) -> f64 {
+        self.half_extents[face as usize / 2]
+    }
+
+    #[inline]
+    fn face_len(&self, _: FaceId) -> usize {
+        4
+    }
+
+    #[inline]
+    fn face_vertex(&self, face: FaceId, i: usize) -> VertexId {
+        FACES[face as usize][i].into()
+    }
+
+    #[inline]
+    fn face_at(&self, vertex: VertexId, dir: DVec3) -> FaceId {
+        let mut best = (f64::NEG_INFINITY, 0);
+        for k in 0..3 {
+            let positive = vertex >> k & 1 == 1;
+            let aligned = if positive { dir[k] } else { -dir[k] };
+            if aligned > best.0 {
+                best = (aligned, 2 * k as FaceId + FaceId::from(!positive));
+            }
+        }
+        best.1
+    }
+
+    #[inline]
+    fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32> {
+        let (low, high) = (from.min(to), from.max(to));
+        (high < 8 && (low ^ high).is_power_of_two()).then_some(low << 3 | high)
+    }
+
+    #[inline]
+    fn edge(&self, id: u32) -> Option<[VertexId; 2]> {
+        let ends = [id >> 3, id & 7];
+        (self.edge_id(ends[0], ends[1]) == Some(id)).then_some(ends)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn faces_turn_counter_clockwise_on_their_planes() {
+        let cuboid = CuboidPolytope::new(DVec3::new(1.0, 2.0, 3.0));
+        for face in 0..6 {
+            let corner = |i| cuboid.vertex(cuboid.face_vertex(face, i));
+            let normal = cuboid.face_normal(face);
+            assert!((corner(1) - corner(0)).cross(corner(2) - corner(1)).dot(normal) > 0.0);
+            for i in 0..4 {
+                assert_eq!(corner(i).dot(normal), cuboid.face_offset(face));
+                let (a, b) = (cuboid.face_vertex(face, i), cuboid.face_vertex(face, (i + 1) % 4));
+                let edge = cuboid.edge_id(a, b).expect("neighbours share an edge");
+                assert_eq!(cuboid.edge(edge), Some([a.min(b), a.max(b)]));
+            }
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! A triangle as a flat polytope with two faces.
+
+use glam::DVec3;
+
+use crate::stats::Cost;
+use crate::support::{FaceId, Polytope, Support, VertexId};
+
+/// A triangle. Face 0 is seen counter-clockwise, face 1 is its back.
+#[derive(Clone, Copy, Debug)]
+pub struct TrianglePolytope {
+    vertices: [DVec3; 3],
+    normal: DVec3,
+    center: DVec3,
+    radius: f64,
+}
+
+impl TrianglePolytope {
+    /// A triangle with these corners; `None` if they are on a line or not finite.
+    pub fn new(vertices: [DVec3; 3]) -> Option<Self> {
+        let [a, b, c] = vertices;
+        let normal = (b - a).cross(c - a).try_normalize()?;
+        let center = (a + b + c) / 3.0;
+        let radius = vertices
+            .iter()
+            .map(|v| v.distance(center))
+            .fold(0.0, f64::max);
+        Some(Self {
+            vertices,
+            normal,
+            center,
+            radius,
+        })
+    }
+}
+
+impl Support for TrianglePolytope {
+    #[inline]
+    fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
+        cost.supports += 1;
+        let mut best = start as usize;
+        let mut value = dir.dot(self.vertices[best]);
+        for (i, v) in self.vertices.iter().enumerate() {
+            let d = dir.dot(*v);
+            if d > value {
+                value = d;
+                best = i;
+            }
+        }
+        (self.vertices[best], best as VertexId)
+    }
+
+    #[inline]
+    fn start(&self, _: DVec3) -> VertexId {
+        0
+    }
+
+    #[inline]
+    fn valid_start(&self, vertex: VertexId) -> VertexId {
+        if vertex < 3 { vertex } else { 0 }
+    }
+
+    #[inline]
+    fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    #[inline]
+    fn radius(&self) -> f64 {
+        self.radius
+    }
+}
+
+impl Polytope for TrianglePolytope {
+    #[inline]
+    fn vertex(&self, vertex: VertexId) -> DVec3 {
+        self.vertices[vertex as usize]
+    }
+
+    #[inline]
+    fn has_face(&self, face: FaceId) -> bool {
+        face < 2
+    }
+
+    #[inline]
+    fn face_normal(&self, face: FaceId) -> DVec3 {
+        if face == 0 { self.normal } else { -self.normal }
+    }
+
+    #[inline]
+    fn face_offset(&self, face: FaceId) -> f64 {
+        let normal = self.face_normal(face);
+        let [a, b, c] = self.vertices.map(|v| normal.dot(v));
+        a.max(b).max(c)
+    }
+
+    #[inline]
+    fn face_len(&self, _: FaceId) -> usize {
+        3
+    }
+
+    #[inline]
+    fn face_vertex(&self, face: FaceId, i: usize) -> VertexId {
+        let i = i as VertexId;
+        if face == 0 { i } else { 2 - i }
+    }
+
+    #[inline]
+    fn face_at(&self, _: VertexId, dir: DVec3) -> FaceId {
+        FaceId::from(self.normal.dot(dir) < 0.0)
+    }
+
+    #[inline]
+    fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32> {
+        let (low, high) = (from.min(to), from.max(to));
+        (low < high && high < 3).then_some(low << 2 | high)
+    }
+
+    #[inline]
+    fn edge(&self, id: u32) -> Option<[VertexId; 2]> {
+        let ends = [id >> 2, id & 3];
+        (self.edge_id(ends[0], ends[1]) == Some(id)).then_some(ends)
+    }
+}

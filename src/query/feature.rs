@@ -1,0 +1,368 @@
+//! Features in contact, and the proof that they still are.
+//!
+//! A pair of features spans a facet of the Minkowski difference: a face and a vertex, or two
+//! edges that cross. Re-evaluated at the present poses it is again a polygon inside of the
+//! Minkowski difference. One support pair along its normal tells whether its plane supports the
+//! difference: then its signed distance from the origin bounds the true one from one side. From
+//! the other side,
+//!
+//! - if the plane separates the shapes: the origin projects into the polygon, so a point of the
+//!   difference is that near;
+//! - if they overlap by `d`: the pyramid from the polygon to the difference's centre lies in the
+//!   difference, and when the origin is at least `d` inside of all of its sides, so does the ball
+//!   of radius `d`; no direction has a smaller depth. *Globally*: no other face was looked at.
+
+use glam::DVec3;
+
+use super::Proximity;
+use crate::gjk::SeparatingAxis;
+use crate::pose::RelativePose;
+use crate::stats::Cost;
+use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
+use crate::tolerance::PARALLEL_EDGES;
+
+/// A part of a polytope's boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feature {
+    /// A vertex.
+    Vertex(VertexId),
+    /// An edge, by its name.
+    Edge(u32),
+    /// A face.
+    Face(FaceId),
+}
+
+/// What a pair of features turned out to prove.
+pub(super) enum Verdict {
+    /// The facet's plane separates the shapes by more than was asked about.
+    Apart(SeparatingAxis),
+    /// The facet's signed distance is that of the shapes.
+    Certified(Proximity),
+    /// Not proved. Points of the Minkowski difference around the facet, to go on from.
+    Unproved(Seeds),
+    /// These features do not span a facet.
+    NoPlane,
+}
+
+/// A few points of the Minkowski difference.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Seeds {
+    points: [CsoVertex; 5],
+    len: usize,
+}
+
+impl Seeds {
+    pub fn as_slice(&self) -> &[CsoVertex] {
+        &self.points[..self.len]
+    }
+
+    fn push(&mut self, point: CsoVertex) {
+        if self.len < self.points.len() {
+            self.points[self.len] = point;
+            self.len += 1;
+        }
+    }
+}
+
+/// Re-evaluates the facet that `features` span.
+pub(super) fn certify<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    features: [Feature; 2],
+    max_distance: f64,
+    tolerance: f64,
+    cost: &mut Cost,
+) -> Verdict {
+    let test = Test {
+        max_distance,
+        tolerance,
+    };
+    let [v1, v2] = vertices(cso, features);
+    match features {
+        [Feature::Edge(e1), Feature::Edge(e2)] => {
+            match (cso.shape_1.edge(e1), cso.shape_2.edge(e2)) {
+                (Some(ends_1), Some(ends_2)) => test.edges(cso, features, ends_1, ends_2, cost),
+                _ => Verdict::NoPlane,
+            }
+        }
+        [Feature::Face(f1), _] if cso.shape_1.has_face(f1) => {
+            test.face(cso.shape_1, cso.shape_2, cso.pose, [f1, v2], cost)
+        }
+        [_, Feature::Face(f2)] if cso.shape_2.has_face(f2) => {
+            let pose = cso.pose.inverse();
+            test.face(cso.shape_2, cso.shape_1, &pose, [f2, v1], cost)
+                .mirrored(cso.pose)
+        }
+        _ => Verdict::NoPlane,
+    }
+}
+
+/// A vertex of each feature, valid for its shape.
+pub(super) fn vertices<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    features: [Feature; 2],
+) -> [VertexId; 2] {
+    [
+        vertex_of(cso.shape_1, features[0]),
+        vertex_of(cso.shape_2, features[1]),
+    ]
+}
+
+fn vertex_of(shape: &impl Polytope, feature: Feature) -> VertexId {
+    let vertex = match feature {
+        Feature::Vertex(v) => v,
+        Feature::Edge(e) => shape.edge(e).map_or(0, |ends| ends[0]),
+        Feature::Face(f) if shape.has_face(f) => shape.face_vertex(f, 0),
+        Feature::Face(_) => 0,
+    };
+    shape.valid_start(vertex)
+}
+
+/// The features that the vertices of a simplex span. `normal` in frame 1, from shape 1 to 2.
+pub(super) fn of_simplex<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    simplex: &[CsoVertex],
+    normal: DVec3,
+) -> [Feature; 2] {
+    [
+        spanned(cso.shape_1, simplex.iter().map(|v| v.ids[0]), normal),
+        spanned(
+            cso.shape_2,
+            simplex.iter().map(|v| v.ids[1]),
+            -cso.pose.direction_to_2(normal),
+        ),
+    ]
+}
+
+fn spanned(
+    shape: &impl Polytope,
+    mut ids: impl Iterator<Item = VertexId>,
+    outward: DVec3,
+) -> Feature {
+    let first = ids.next().unwrap_or(0);
+    let mut second = None;
+    for id in ids {
+        match second {
+            _ if id == first => {}
+            None => second = Some(id),
+            Some(s) if s == id => {}
+            Some(_) => return Feature::Face(shape.face_at(first, outward)),
+        }
+    }
+    match second {
+        None => Feature::Vertex(first),
+        // Two vertices without an edge between them are a diagonal of a face.
+        Some(s) => match shape.edge_id(first, s) {
+            Some(edge) => Feature::Edge(edge),
+            None => Feature::Face(shape.face_at(first, outward)),
+        },
+    }
+}
+
+struct Test {
+    max_distance: f64,
+    tolerance: f64,
+}
+
+impl Test {
+    /// A face of `p` against `q`; everything in the frame of `p`. `ids` are the face and a
+    /// vertex of `q` to climb from.
+    fn face<P: Polytope, Q: Polytope>(
+        &self,
+        p: &P,
+        q: &Q,
+        q_pose: &RelativePose,
+        [face, start]: [u32; 2],
+        cost: &mut Cost,
+    ) -> Verdict {
+        let normal = p.face_normal(face);
+        let (on_q, q_id) = q.support(-q_pose.direction_to_2(normal), start, cost);
+        let on_q = q_pose.point_to_1(on_q);
+        let signed_distance = normal.dot(on_q) - p.face_offset(face);
+        if signed_distance > self.max_distance {
+            return Verdict::Apart(SeparatingAxis {
+                axis: normal,
+                separation: signed_distance,
+                ids: [p.face_vertex(face, 0), q_id],
+            });
+        }
+        let count = p.face_len(face);
+        let corner = |i: usize| p.vertex(p.face_vertex(face, i)) - on_q;
+        let apex = p.center() - q_pose.point_to_1(q.center());
+        let proved = if signed_distance >= 0.0 {
+            projects_inside(count, corner, normal, self.tolerance)
+        } else {
+            let depth = -signed_distance - self.tolerance;
+            pyramid_holds_ball(count, corner, apex, depth)
+        };
+        if proved {
+            return Verdict::Certified(Proximity {
+                signed_distance,
+                normal,
+                on_1: on_q - normal * signed_distance,
+                on_2: on_q,
+                features: [Feature::Face(face), Feature::Vertex(q_id)],
+            });
+        }
+        let mut seeds = Seeds::default();
+        // Corners spread around the face, whatever their number.
+        let spread = count.min(4);
+        for i in 0..spread {
+            let id = p.face_vertex(face, i * count / spread);
+            let on_p = p.vertex(id);
+            seeds.push(CsoVertex {
+                w: on_p - on_q,
+                on_1: on_p,
+                ids: [id, q_id],
+            });
+        }
+        seeds.push(center_seed(apex, p.center(), seeds.points[0].ids));
+        Verdict::Unproved(seeds)
+    }
+
+    /// Two edges that cross; everything in frame 1.
+    fn edges<A: Polytope, B: Polytope>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        features: [Feature; 2],
+        ends_1: [VertexId; 2],
+        ends_2: [VertexId; 2],
+        cost: &mut Cost,
+    ) -> Verdict {
+        let [a0, a1] = ends_1.map(|v| cso.shape_1.vertex(v));
+        let [b0, b1] = ends_2.map(|v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
+        let (along_1, along_2) = (a1 - a0, b1 - b0);
+        let cross = along_1.cross(along_2);
+        let area_squared = cross.length_squared();
+        let lengths = along_1.length_squared() * along_2.length_squared();
+        // Also false for NaN.
+        if !(area_squared > PARALLEL_EDGES * lengths) {
+            return Verdict::NoPlane;
+        }
+        let center = cso.center();
+        let offset = a0 - b0;
+        let outward = if cross.dot(offset - center) >= 0.0 { 1.0 } else { -1.0 };
+        let normal = cross * (outward / area_squared.sqrt());
+        let extreme = cso.support(normal, [ends_1[0], ends_2[0]], cost);
+        let signed_distance = -normal.dot(extreme.w);
+        if signed_distance > self.max_distance {
+            return Verdict::Apart(SeparatingAxis {
+                axis: normal,
+                separation: signed_distance,
+                ids: extreme.ids,
+            });
+        }
+        let corners = [
+            offset,
+            offset + along_1,
+            offset + along_1 - along_2,
+            offset - along_2,
+        ];
+        // Where the plane through both edges meets the line from the origin along the normal.
+        let s = -offset.dot(along_2.cross(cross)) / area_squared;
+        let t = -offset.dot(along_1.cross(cross)) / area_squared;
+        let supports = -normal.dot(offset) - signed_distance <= self.tolerance;
+        let proved = supports
+            && if signed_distance >= 0.0 {
+                (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t)
+            } else {
+                let depth = -signed_distance - self.tolerance;
+                // `along_1` then `-along_2` turn clockwise about `cross`.
+                let corner = |i: usize| corners[if outward < 0.0 { i } else { 3 - i }];
+                pyramid_holds_ball(4, corner, center, depth)
+            };
+        if proved {
+            let on_1 = a0 + along_1 * s;
+            return Verdict::Certified(Proximity {
+                signed_distance,
+                normal,
+                on_1,
+                on_2: on_1 + normal * signed_distance,
+                features,
+            });
+        }
+        let mut seeds = Seeds::default();
+        for (i, &w) in corners.iter().enumerate() {
+            let (a, b) = ([0, 1, 1, 0][i], [0, 0, 1, 1][i]);
+            seeds.push(CsoVertex {
+                w,
+                on_1: [a0, a1][a],
+                ids: [ends_1[a], ends_2[b]],
+            });
+        }
+        seeds.push(center_seed(center, cso.shape_1.center(), extreme.ids));
+        Verdict::Unproved(seeds)
+    }
+}
+
+/// The centre of the Minkowski difference: inside, so that it never is a corner of the answer.
+fn center_seed(w: DVec3, on_1: DVec3, ids: [VertexId; 2]) -> CsoVertex {
+    CsoVertex { w, on_1, ids }
+}
+
+/// Whether the origin projects along `normal` into a polygon that turns counter-clockwise about
+/// it, up to `tolerance`.
+fn projects_inside(
+    count: usize,
+    corner: impl Fn(usize) -> DVec3,
+    normal: DVec3,
+    tolerance: f64,
+) -> bool {
+    let mut from = corner(count - 1);
+    (0..count).all(|i| {
+        let to = corner(i);
+        let inward = normal.cross(to - from);
+        let height = -inward.dot(from);
+        from = to;
+        height >= 0.0 || height * height <= tolerance * tolerance * inward.length_squared()
+    })
+}
+
+/// Whether the origin is at least `depth` inside of all side planes of the pyramid over a
+/// polygon, counter-clockwise seen from outside, whose apex is beneath it.
+fn pyramid_holds_ball(
+    count: usize,
+    corner: impl Fn(usize) -> DVec3,
+    apex: DVec3,
+    depth: f64,
+) -> bool {
+    let depth = depth.max(0.0);
+    let mut from = corner(count - 1);
+    (0..count).all(|i| {
+        let to = corner(i);
+        let inward = (to - from).cross(apex - from);
+        let height = -inward.dot(from);
+        from = to;
+        height >= 0.0 && height * height >= depth * depth * inward.length_squared()
+    })
+}
+
+impl Verdict {
+    /// From the frame of shape 2, with the shapes swapped, to frame 1.
+    fn mirrored(self, pose: &RelativePose) -> Self {
+        match self {
+            Self::Apart(apart) => Self::Apart(SeparatingAxis {
+                axis: -pose.direction_to_1(apart.axis),
+                separation: apart.separation,
+                ids: [apart.ids[1], apart.ids[0]],
+            }),
+            Self::Certified(p) => Self::Certified(Proximity {
+                signed_distance: p.signed_distance,
+                normal: -pose.direction_to_1(p.normal),
+                on_1: pose.point_to_1(p.on_2),
+                on_2: pose.point_to_1(p.on_1),
+                features: [p.features[1], p.features[0]],
+            }),
+            Self::Unproved(mut seeds) => {
+                for seed in &mut seeds.points[..seeds.len] {
+                    *seed = CsoVertex {
+                        w: -pose.direction_to_1(seed.w),
+                        on_1: pose.point_to_1(seed.on_2()),
+                        ids: [seed.ids[1], seed.ids[0]],
+                    };
+                }
+                Self::Unproved(seeds)
+            }
+            Self::NoPlane => Self::NoPlane,
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! The coherent query: from what the previous frame knew, the cheapest stage that can *prove*
+//! its answer gives it.
+//!
+//! 1. [`Stage::Axis`]: one support pair along the previous axis still separates.
+//! 2. [`Stage::Feature`]: the previous nearest features still prove distance or depth.
+//! 3. [`Stage::WarmGjk`]: incremental GJK from the previous axis and vertices.
+//! 4. [`Stage::WarmEpa`]: the depth, expanded from the previous features.
+//!
+//! Without a previous frame GJK and EPA start cold. A stale or wrong memory costs time, never
+//! accuracy: nothing is believed that is not re-evaluated at the present poses.
+
+mod feature;
+
+pub use feature::Feature;
+
+use glam::DVec3;
+
+use crate::epa::{self, EpaScratch, Penetration};
+use crate::gjk::{self, Closest, Outcome, SeparatingAxis};
+use crate::simplex::Voronoi;
+use crate::stats::{Cost, Stage};
+use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
+use crate::tolerance::DEPTH_GAP;
+use feature::Verdict;
+
+/// What is remembered of a pair from one frame to the next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Memory {
+    /// Nothing: the pair is new.
+    None,
+    /// The shapes were apart along this unit axis (frame 1), at these vertices.
+    Axis(DVec3, [VertexId; 2]),
+    /// The shapes were in contact along this unit normal (frame 1), at these features.
+    Contact(DVec3, [Feature; 2]),
+}
+
+/// Signed distance, normal and witness points of a pair. All in frame 1.
+#[derive(Clone, Copy, Debug)]
+pub struct Proximity {
+    /// Distance of disjoint shapes; minus the penetration depth of overlapping ones.
+    pub signed_distance: f64,
+    /// Unit direction from shape 1 to shape 2 along which they are that far apart.
+    pub normal: DVec3,
+    /// The witness point on shape 1.
+    pub on_1: DVec3,
+    /// The witness point on shape 2.
+    pub on_2: DVec3,
+    /// The features that the witness points lie on.
+    pub features: [Feature; 2],
+}
+
+/// The answer to a query.
+#[derive(Clone, Copy, Debug)]
+pub enum Answer {
+    /// Farther apart than the query asked about.
+    Apart(SeparatingAxis),
+    /// This near, or overlapping.
+    Near(Proximity),
+}
+
+/// A query between two shapes.
+pub struct Query<'a, 'c, A, B> {
+    /// The pair.
+    pub cso: &'a Cso<'c, A, B>,
+    /// Answers beyond this distance are [`Answer::Apart`].
+    pub max_distance: f64,
+    /// Memory for the expanding polytope.
+    pub scratch: &'a mut EpaScratch,
+    /// Filled in with what the query cost.
+    pub cost: &'a mut Cost,
+}
+
+impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
+    /// Answers from `memory` where that is possible, cold otherwise. `None` only if the shapes
+    /// have no volume between them or are not finite.
+    pub fn run(&mut self, memory: &Memory) -> Option<(Answer, Stage)> {
+        match *memory {
+            Memory::None => {
+                let axis = self.center_line();
+                let start = self.cso.start(axis);
+                let vertex = self.cso.support(axis, start, self.cost);
+                self.from_vertex(vertex, [Stage::ColdGjk, Stage::ColdEpa])
+            }
+            Memory::Axis(axis, ids) => {
+                match gjk::test_axis(
+                    self.cso,
+                    axis,
+                    self.valid_start(ids),
+                    self.max_distance,
+                    self.cost,
+                ) {
+                    Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
+                    Err(vertex) => self.from_vertex(vertex, [Stage::WarmGjk, Stage::WarmEpa]),
+                }
+            }
+            Memory::Contact(normal, features) => self.from_contact(normal, features),
+        }
+    }
+
+    /// From the centre of shape 1 to that of shape 2; some direction where they coincide.
+    fn center_line(&self) -> DVec3 {
+        (-self.cso.center()).normalize_or(DVec3::X)
+    }
+
+    fn valid_start(&self, ids: [VertexId; 2]) -> [VertexId; 2] {
+        [
+            self.cso.shape_1.valid_start(ids[0]),
+            self.cso.shape_2.valid_start(ids[1]),
+        ]
+    }
+
+    /// GJK from a vertex of the Minkowski difference, and EPA if the shapes overlap.
+    fn from_vertex(
+        &mut self,
+        vertex: CsoVertex,
+        stages: [Stage; 2],
+    ) -> Option<(Answer, Stage)> {
+        match gjk::distance::<Voronoi, _, _>(self.cso, vertex, self.max_distance, self.cost) {
+            Outcome::Apart(apart) => Some((Answer::Apart(apart), stages[0])),
+            Outcome::Near(closest) => Some((self.near(&closest), stages[0])),
+            Outcome::Overlap(simplex) => {
+                let depth =
+                    epa::penetration(self.cso, simplex.vertices(), self.scratch, self.cost)?;
+                Some((self.overlapping(&depth), stages[1]))
+            }
+        }
+    }
+
+    fn from_contact(
+        &mut self,
+        normal: DVec3,
+        features: [Feature; 2],
+    ) -> Option<(Answer, Stage)> {
+        let tolerance = DEPTH_GAP * self.cso.smaller_radius();
+        match feature::certify(self.cso, features, self.max_distance, tolerance, self.cost) {
+            Verdict::Apart(apart) => Some((Answer::Apart(apart), Stage::Axis)),
+            Verdict::Certified(proximity) => Some((Answer::Near(proximity), Stage::Feature)),
+            Verdict::Unproved(seeds) => self.from_seeds(seeds.as_slice()),
+            Verdict::NoPlane => {
+                let start = feature::vertices(self.cso, features);
+                let vertex = self.cso.support(normal, start, self.cost);
+                self.from_vertex(vertex, [Stage::WarmGjk, Stage::WarmEpa])
+            }
+        }
+    }
+
+    /// The depth, grown from points near the previous contact; where it finds the shapes
+    /// separate, GJK finds how far.
+    fn from_seeds(&mut self, seeds: &[CsoVertex]) -> Option<(Answer, Stage)> {
+        let depth = epa::penetration(self.cso, seeds, self.scratch, self.cost)?;
+        let separation = -depth.depth;
+        let ids = depth.face[0].ids;
+        if separation > self.max_distance {
+            let axis = SeparatingAxis {
+                axis: depth.normal,
+                separation,
+                ids,
+            };
+            return Some((Answer::Apart(axis), Stage::WarmEpa));
+        }
+        if separation > 0.0 {
+            let vertex = self.cso.support(depth.normal, ids, self.cost);
+            return self.from_vertex(vertex, [Stage::WarmGjk, Stage::WarmEpa]);
+        }
+        Some((self.overlapping(&depth), Stage::WarmEpa))
+    }
+
+    fn near(&self, closest: &Closest) -> Answer {
+        Answer::Near(Proximity {
+            signed_distance: closest.distance,
+            normal: closest.normal,
+            on_1: closest.on_1,
+            on_2: closest.on_2,
+            features: feature::of_simplex(self.cso, closest.simplex.vertices(), closest.normal),
+        })
+    }
+
+    fn overlapping(&self, depth: &Penetration) -> Answer {
+        Answer::Near(Proximity {
+            signed_distance: -depth.depth,
+            normal: depth.normal,
+            on_1: depth.on_1,
+            on_2: depth.on_2,
+            features: feature::of_simplex(self.cso, &depth.face, depth.normal),
+        })
+    }
+}

@@ -1,0 +1,132 @@
+//! What the kernels see of a shape: extreme points with vertex ids, and of a polytope its faces.
+
+use glam::DVec3;
+
+use crate::pose::RelativePose;
+use crate::stats::Cost;
+
+/// The index of a vertex of a shape. Smooth shapes, which have none, use 0.
+pub type VertexId = u32;
+
+/// A convex shape as its support mapping, in its own frame.
+pub trait Support {
+    /// A point that is extreme in direction `dir` (any length), and its vertex.
+    ///
+    /// `start` is where to begin the search, usually the answer of a similar query. It must be
+    /// a valid vertex; a bad choice costs time, never accuracy.
+    fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId);
+
+    /// A start for [`support`](Self::support) when no similar query is known.
+    fn start(&self, dir: DVec3) -> VertexId;
+
+    /// `vertex` if the shape has it, else some vertex that it has.
+    fn valid_start(&self, vertex: VertexId) -> VertexId;
+
+    /// A point inside, off the boundary wherever the shape has volume.
+    fn center(&self) -> DVec3;
+
+    /// The largest distance of a point from [`center`](Self::center).
+    fn radius(&self) -> f64;
+}
+
+/// A face of a polytope: polygon and plane.
+pub type FaceId = u32;
+
+/// A convex polytope: a support mapping with faces and edges around it.
+pub trait Polytope: Support {
+    /// The position of a vertex.
+    fn vertex(&self, vertex: VertexId) -> DVec3;
+
+    /// Whether there is such a face.
+    fn has_face(&self, face: FaceId) -> bool;
+
+    /// The outward unit normal of a face.
+    fn face_normal(&self, face: FaceId) -> DVec3;
+
+    /// The largest `normal · p` over the shape.
+    fn face_offset(&self, face: FaceId) -> f64;
+
+    /// The number of vertices around a face.
+    fn face_len(&self, face: FaceId) -> usize;
+
+    /// The `i`-th vertex of a face, counter-clockwise seen from outside.
+    fn face_vertex(&self, face: FaceId, i: usize) -> VertexId;
+
+    /// The face at `vertex` that looks most in direction `dir`.
+    fn face_at(&self, vertex: VertexId, dir: DVec3) -> FaceId;
+
+    /// The name of the edge between two neighbouring vertices.
+    fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32>;
+
+    /// The end vertices of an edge.
+    fn edge(&self, id: u32) -> Option<[VertexId; 2]>;
+}
+
+/// A vertex of the Minkowski difference: its position and where it comes from (frame 1).
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CsoVertex {
+    /// `on_1 - on_2`.
+    pub w: DVec3,
+    /// The point of shape 1.
+    pub on_1: DVec3,
+    /// The vertices of the two shapes.
+    pub ids: [VertexId; 2],
+}
+
+impl CsoVertex {
+    /// The point of shape 2, in frame 1.
+    #[inline]
+    pub fn on_2(&self) -> DVec3 {
+        self.on_1 - self.w
+    }
+}
+
+/// The Minkowski difference of shape 1 and shape 2 (the configuration space obstacle), never
+/// built, only asked for extreme points. All in frame 1.
+pub struct Cso<'a, A, B> {
+    /// Shape 1.
+    pub shape_1: &'a A,
+    /// Shape 2.
+    pub shape_2: &'a B,
+    /// Where shape 2 is.
+    pub pose: &'a RelativePose,
+}
+
+impl<A: Support, B: Support> Cso<'_, A, B> {
+    /// A point that is extreme in direction `dir`, the two climbs starting at `start`.
+    #[inline]
+    pub fn support(&self, dir: DVec3, start: [VertexId; 2], cost: &mut Cost) -> CsoVertex {
+        let (on_1, id_1) = self.shape_1.support(dir, start[0], cost);
+        let (on_2, id_2) = self
+            .shape_2
+            .support(-self.pose.direction_to_2(dir), start[1], cost);
+        CsoVertex {
+            w: on_1 - self.pose.point_to_1(on_2),
+            on_1,
+            ids: [id_1, id_2],
+        }
+    }
+
+    /// Start vertices for direction `dir` when nothing is known.
+    pub fn start(&self, dir: DVec3) -> [VertexId; 2] {
+        [
+            self.shape_1.start(dir),
+            self.shape_2.start(-self.pose.direction_to_2(dir)),
+        ]
+    }
+
+    /// A point inside, with its origins on the two shapes.
+    pub fn center(&self) -> DVec3 {
+        self.shape_1.center() - self.pose.point_to_1(self.shape_2.center())
+    }
+
+    /// The length that tolerances of the whole pair are relative to.
+    pub fn size(&self) -> f64 {
+        self.shape_1.radius() + self.shape_2.radius()
+    }
+
+    /// The length that tolerances must not exceed if the smaller shape is to keep its accuracy.
+    pub fn smaller_radius(&self) -> f64 {
+        self.shape_1.radius().min(self.shape_2.radius())
+    }
+}

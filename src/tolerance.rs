@@ -1,0 +1,50 @@
+//! Every tolerance of the crate, with its reason.
+//!
+//! Shapes come with f32 coordinates (unit roundoff 6e-8) and all arithmetic behind them is f64
+//! (1e-16), so what is exact in the input stays decidable. A tolerance named "relative" is
+//! multiplied by a length of the shapes at hand; none is an absolute length.
+
+/// A face is a set of hull triangles that deviate from one plane by at most this share of the
+/// hull's radius. Ten f32 roundings: flat caps become one polygon, and what a face certifies is
+/// wrong by no more than this.
+pub const FACE_FLATNESS: f64 = 6e-7;
+
+/// Neighbouring triangles are only joined to a face when their normals are within 1 degree
+/// (cosine), so that slivers of arbitrary direction cannot chain a face around a corner.
+pub const FACE_ANGLE_COS: f64 = 0.999_847_7;
+
+/// How far (relative to the radius) a hull vertex may lie above the plane of a neighbouring
+/// triangle. Hull builders working in f32 leave defects of a few roundings.
+pub const CONVEXITY: f64 = 4e-6;
+
+/// A hull whose smallest extent is below this share of its radius has no usable interior.
+pub const THINNEST: f64 = 1e-6;
+
+/// Two support values closer than this share of `radius * |direction|` tie for hill climbing:
+/// vertices that are coplanar up to f32 rounding must be seen as one plateau.
+pub const PLATEAU: f64 = 4e-7;
+
+/// GJK stops when its bounds of the distance differ by less than this share of the distance...
+pub const GJK_RELATIVE_GAP: f64 = 1e-9;
+
+/// ...or by less than this share of the pair's size: the rounding of f64 sums of coordinates.
+pub const GJK_ABSOLUTE_GAP: f64 = 1e-12;
+
+/// A distance below this share of the pair's size has no reliable direction; the penetration
+/// search, which works on planes, answers instead.
+pub const TOUCHING: f64 = 1e-10;
+
+/// A penetration depth is certified when upper and lower bound differ by less than this share
+/// of the smaller shape's radius: a tenth of the promised accuracy.
+pub const DEPTH_GAP: f64 = 1e-6;
+
+/// Points (relative to the pair's size) closer than this to a line or plane do not span an
+/// initial polytope: 1e5 roundings of f64, far below anything f32 input can resolve.
+pub const DEGENERATE: f64 = 1e-11;
+
+/// Visibility of a polytope face from a new point, relative to the pair's size: coplanar
+/// faces count as visible, so that they are replaced together and no sliver is left.
+pub const COPLANAR: f64 = 1e-14;
+
+/// Edges whose directions span less than this sine squared do not define a contact normal.
+pub const PARALLEL_EDGES: f64 = 1e-8;
