@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 pub mod dispatcher;
+pub mod simplex;
 pub mod stats;
 
 pub use dispatcher::IsaGjkDispatcher;
