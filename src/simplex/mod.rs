@@ -1,0 +1,63 @@
+//! Distance sub-algorithms: the point of a simplex nearest to the origin.
+//!
+//! Three answers to one question, to be compared and exchanged freely. Each of them returns a
+//! convex combination of the vertices, whatever rounding does to the case distinctions: a wrong
+//! turn costs distance, never membership. Coordinates may range over many decades (1e-40 to 1e40);
+//! beyond that products over- or underflow, and the answer degrades to a vertex.
+
+mod faces;
+mod johnson;
+mod signed_volumes;
+mod voronoi;
+
+use glam::DVec3;
+
+pub use johnson::Johnson;
+pub use signed_volumes::SignedVolumes;
+pub use voronoi::Voronoi;
+
+/// The point of a simplex nearest to the origin, and the smallest face that holds it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest {
+    /// v(conv Y): the nearest point; exactly zero when the origin is inside of a tetrahedron.
+    pub point: DVec3,
+    /// Bit i is set when vertex i belongs to the smallest face that holds the point.
+    pub face: u8,
+    /// Barycentric coordinates; zero outside of `face`; sum 1.
+    pub lambda: [f64; 4],
+}
+
+impl Nearest {
+    /// The convex combination of `points` with the weights `lambda`.
+    #[inline]
+    fn new(points: &[DVec3], lambda: [f64; 4]) -> Self {
+        let face = (0..4).fold(0, |face, i| face | (u8::from(lambda[i] > 0.0) << i));
+        let point = if face == 0b1111 {
+            DVec3::ZERO
+        } else {
+            combine(points, &lambda)
+        };
+        Self {
+            point,
+            face,
+            lambda,
+        }
+    }
+}
+
+/// Finds the point of a simplex nearest to the origin. Implementors are zero-sized: the choice is
+/// made at compile time.
+pub trait DistanceSubalgorithm {
+    /// `points`: 1 to 4 vertices, in any order and position, degenerate or not. (No vertices have
+    /// no nearest point: the answer is then the origin with an empty face.)
+    fn nearest(points: &[DVec3]) -> Nearest;
+}
+
+/// Σ λ_i y_i.
+#[inline]
+fn combine(points: &[DVec3], lambda: &[f64]) -> DVec3 {
+    points
+        .iter()
+        .zip(lambda)
+        .fold(DVec3::ZERO, |sum, (&y, &l)| sum + y * l)
+}
