@@ -1,5 +1,13 @@
 //! The plug: rapier's narrow phase asks [`IsaGjkDispatcher`] instead of parry's own dispatcher.
 
+mod cache;
+mod composite;
+mod convex;
+mod hulls;
+mod pair;
+mod scene;
+mod topology;
+
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints, ShapeCastOptions};
 use parry3d::query::{
@@ -9,9 +17,15 @@ use parry3d::query::{
 };
 use parry3d::shape::Shape;
 
+use convex::UpdateManifold;
+
 use crate::stats::{SharedStats, Stats};
 
-/// Give this to [`NarrowPhase::with_query_dispatcher`] and hull pairs become coherent.
+/// A query dispatcher that answers pairs with a convex hull itself and passes every other pair
+/// on to parry's own.
+///
+/// Give it to `NarrowPhase::with_query_dispatcher`, or to `set_query_dispatcher` of a world that
+/// runs already. Clones share their statistics.
 #[derive(Clone, Default)]
 pub struct IsaGjkDispatcher {
     stats: SharedStats,
@@ -33,7 +47,10 @@ impl QueryDispatcher for IsaGjkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        DEFAULT.intersection_test(pos12, g1, g2)
+        match scene::near(pos12, g1, g2, 0.0) {
+            Some(near) => Ok(near.is_some_and(|n| n.intersecting()).into()),
+            None => DEFAULT.intersection_test(pos12, g1, g2),
+        }
     }
 
     fn distance(
@@ -42,7 +59,10 @@ impl QueryDispatcher for IsaGjkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        DEFAULT.distance(pos12, g1, g2)
+        match scene::near(pos12, g1, g2, Real::INFINITY) {
+            Some(near) => Ok(near.map_or(Real::INFINITY, |n| n.distance()).into()),
+            None => DEFAULT.distance(pos12, g1, g2),
+        }
     }
 
     fn contact(
@@ -52,7 +72,10 @@ impl QueryDispatcher for IsaGjkDispatcher {
         g2: &dyn Shape,
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
-        DEFAULT.contact(pos12, g1, g2, prediction)
+        match scene::near(pos12, g1, g2, prediction) {
+            Some(near) => Ok(near.map(|n| n.contact())),
+            None => DEFAULT.contact(pos12, g1, g2, prediction),
+        }
     }
 
     fn closest_points(
@@ -62,7 +85,10 @@ impl QueryDispatcher for IsaGjkDispatcher {
         g2: &dyn Shape,
         max_dist: Real,
     ) -> Result<ClosestPoints, Unsupported> {
-        DEFAULT.closest_points(pos12, g1, g2, max_dist)
+        match scene::near(pos12, g1, g2, max_dist) {
+            Some(near) => Ok(near.map_or(ClosestPoints::Disjoint, |n| n.closest_points())),
+            None => DEFAULT.closest_points(pos12, g1, g2, max_dist),
+        }
     }
 
     fn cast_shapes(
@@ -112,7 +138,22 @@ where
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
-        DEFAULT.contact_manifolds(pos12, g1, g2, prediction, manifolds, workspace)
+        let shapes = [g1, g2];
+        if composite::contact_manifolds(self, pos12, shapes, prediction, manifolds, workspace) {
+            return Ok(());
+        }
+        if manifolds.is_empty() {
+            manifolds.push(ContactManifold::new());
+        }
+        self.contact_manifold_convex_convex(
+            pos12,
+            g1,
+            g2,
+            None,
+            None,
+            prediction,
+            &mut manifolds[0],
+        )
     }
 
     fn contact_manifold_convex_convex(
@@ -125,6 +166,16 @@ where
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported> {
+        let update = UpdateManifold {
+            pos12,
+            prediction,
+            constraints: [normal_constraints1, normal_constraints2],
+            manifold,
+            stats: &self.stats,
+        };
+        if let Some(Some(())) = pair::visit(g1, g2, update) {
+            return Ok(());
+        }
         DEFAULT.contact_manifold_convex_convex(
             pos12,
             g1,

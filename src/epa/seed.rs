@@ -35,9 +35,7 @@ pub(super) fn tetrahedron<A: Support, B: Support>(
     })?;
 
     let normal = along.cross(third.w - first.w).try_normalize()?;
-    let fourth = search.farthest(&[normal, -normal], cost, |p| {
-        normal.dot(p - first.w).abs()
-    })?;
+    let fourth = search.farthest(&[normal, -normal], cost, |p| normal.dot(p - first.w).abs())?;
     Some([first, second, third, fourth])
 }
 

@@ -60,7 +60,8 @@ impl Hull {
         require_convex(&points, triangles, &graph, radius)?;
 
         let mut cost = Cost::default();
-        let mut support = |dir, start| climb::support(&points, &graph, radius, dir, start, &mut cost);
+        let mut support =
+            |dir, start| climb::support(&points, &graph, radius, dir, start, &mut cost);
         let faces = Faces::new(&points, triangles, radius, |normal, start| {
             normal.dot(support(normal, start).0)
         });

@@ -145,10 +145,18 @@ mod tests {
         for face in 0..6 {
             let corner = |i| cuboid.vertex(cuboid.face_vertex(face, i));
             let normal = cuboid.face_normal(face);
-            assert!((corner(1) - corner(0)).cross(corner(2) - corner(1)).dot(normal) > 0.0);
+            assert!(
+                (corner(1) - corner(0))
+                    .cross(corner(2) - corner(1))
+                    .dot(normal)
+                    > 0.0
+            );
             for i in 0..4 {
                 assert_eq!(corner(i).dot(normal), cuboid.face_offset(face));
-                let (a, b) = (cuboid.face_vertex(face, i), cuboid.face_vertex(face, (i + 1) % 4));
+                let (a, b) = (
+                    cuboid.face_vertex(face, i),
+                    cuboid.face_vertex(face, (i + 1) % 4),
+                );
                 let edge = cuboid.edge_id(a, b).expect("neighbours share an edge");
                 assert_eq!(cuboid.edge(edge), Some([a.min(b), a.max(b)]));
             }

@@ -97,7 +97,7 @@ pub(super) fn certify<A: Polytope, B: Polytope>(
 }
 
 /// A vertex of each feature, valid for its shape.
-pub(super) fn vertices<A: Polytope, B: Polytope>(
+pub fn vertices<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     features: [Feature; 2],
 ) -> [VertexId; 2] {
@@ -240,7 +240,11 @@ impl Test {
         }
         let center = cso.center();
         let offset = a0 - b0;
-        let outward = if cross.dot(offset - center) >= 0.0 { 1.0 } else { -1.0 };
+        let outward = if cross.dot(offset - center) >= 0.0 {
+            1.0
+        } else {
+            -1.0
+        };
         let normal = cross * (outward / area_squared.sqrt());
         let extreme = cso.support(normal, [ends_1[0], ends_2[0]], cost);
         let signed_distance = -normal.dot(extreme.w);

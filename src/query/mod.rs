@@ -11,7 +11,7 @@
 
 mod feature;
 
-pub use feature::Feature;
+pub use feature::{Feature, vertices};
 
 use glam::DVec3;
 
@@ -19,7 +19,7 @@ use crate::epa::{self, EpaScratch, Penetration};
 use crate::gjk::{self, Closest, Outcome, SeparatingAxis};
 use crate::simplex::Voronoi;
 use crate::stats::{Cost, Stage};
-use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
+use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 use crate::tolerance::DEPTH_GAP;
 use feature::Verdict;
 
@@ -110,11 +110,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     }
 
     /// GJK from a vertex of the Minkowski difference, and EPA if the shapes overlap.
-    fn from_vertex(
-        &mut self,
-        vertex: CsoVertex,
-        stages: [Stage; 2],
-    ) -> Option<(Answer, Stage)> {
+    fn from_vertex(&mut self, vertex: CsoVertex, stages: [Stage; 2]) -> Option<(Answer, Stage)> {
         match gjk::distance::<Voronoi, _, _>(self.cso, vertex, self.max_distance, self.cost) {
             Outcome::Apart(apart) => Some((Answer::Apart(apart), stages[0])),
             Outcome::Near(closest) => Some((self.near(&closest), stages[0])),
@@ -126,11 +122,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
     }
 
-    fn from_contact(
-        &mut self,
-        normal: DVec3,
-        features: [Feature; 2],
-    ) -> Option<(Answer, Stage)> {
+    fn from_contact(&mut self, normal: DVec3, features: [Feature; 2]) -> Option<(Answer, Stage)> {
         let tolerance = DEPTH_GAP * self.cso.smaller_radius();
         match feature::certify(self.cso, features, self.max_distance, tolerance, self.cost) {
             Verdict::Apart(apart) => Some((Answer::Apart(apart), Stage::Axis)),

@@ -1,0 +1,111 @@
+//! A pair's memory, kept in its contact manifold.
+//!
+//! Manifolds are saved, cloned and pooled with the world, reach the parts of composite shapes,
+//! and cost rapier nothing; a workspace would make it rebuild its solver graph every step. So
+//! the memory is written where the manifold has room, in words that mean what they say:
+//!
+//! - without points, `local_n1` is the separating axis (parry's own habit), and `local_n2`, which
+//!   nobody reads then, holds the two extreme vertices as whole numbers;
+//! - with points, `local_n1` is the contact normal, and the feature ids of the first point name
+//!   the features in contact.
+//!
+//! What another dispatcher or a different pair left there is as good as any other hint.
+
+use glam::{DVec3, Vec3};
+use parry3d::query::ContactManifold;
+use parry3d::shape::PackedFeatureId;
+
+use crate::gjk::SeparatingAxis;
+use crate::query::{self, Feature, Memory, Proximity};
+use crate::support::{Cso, Polytope};
+
+/// Reads what the previous frame left.
+#[inline]
+pub(super) fn read<M, C>(manifold: &ContactManifold<M, C>) -> Memory {
+    let Some(axis) = unit(manifold.local_n1) else {
+        return Memory::None;
+    };
+    match manifold.points.first() {
+        None => {
+            let n2 = manifold.local_n2;
+            // Casts saturate, and NaN becomes 0: any vector is some pair of vertices.
+            Memory::Axis(axis, [n2.x as u32, n2.y as u32])
+        }
+        Some(point) => match (unpack(point.fid1), unpack(point.fid2)) {
+            (Some(f1), Some(f2)) => Memory::Contact(axis, [f1, f2]),
+            _ => Memory::Axis(axis, [0, 0]),
+        },
+    }
+}
+
+/// Leaves a separating axis in a manifold without points.
+#[inline]
+pub(super) fn write_axis<M, C>(manifold: &mut ContactManifold<M, C>, apart: &SeparatingAxis) {
+    manifold.points.clear();
+    manifold.local_n1 = apart.axis.as_vec3();
+    manifold.local_n2 = Vec3::new(apart.ids[0] as f32, apart.ids[1] as f32, 0.0);
+}
+
+/// Leaves a contact that was discarded, as a place for the next query to start from.
+pub(super) fn write_start<A: Polytope, B: Polytope, M, C>(
+    manifold: &mut ContactManifold<M, C>,
+    near: &Proximity,
+    cso: &Cso<'_, A, B>,
+) {
+    let start = SeparatingAxis {
+        axis: near.normal,
+        separation: near.signed_distance,
+        ids: query::vertices(cso, near.features),
+    };
+    write_axis(manifold, &start);
+}
+
+/// A vector that was a unit vector before rounding, or nothing.
+fn unit(v: Vec3) -> Option<DVec3> {
+    let v = v.as_dvec3();
+    let length = v.length();
+    // Also false for NaN.
+    ((length - 1.0).abs() < 1e-3).then(|| v / length)
+}
+
+const KIND: u32 = 0b11 << 30;
+const VERTEX: u32 = 0b01 << 30;
+const EDGE: u32 = 0b10 << 30;
+const FACE: u32 = 0b11 << 30;
+
+/// As parry packs feature ids; its own constructors are not inlined across crates.
+#[inline]
+pub(super) fn pack(feature: Feature) -> PackedFeatureId {
+    PackedFeatureId(match feature {
+        Feature::Vertex(v) => VERTEX | v,
+        Feature::Edge(e) => EDGE | e,
+        Feature::Face(f) => FACE | f,
+    })
+}
+
+#[inline]
+fn unpack(id: PackedFeatureId) -> Option<Feature> {
+    let code = id.0 & !KIND;
+    match id.0 & KIND {
+        VERTEX => Some(Feature::Vertex(code)),
+        EDGE => Some(Feature::Edge(code)),
+        FACE => Some(Feature::Face(code)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn packed_features_are_parrys() {
+        assert_eq!(pack(Feature::Vertex(7)), PackedFeatureId::vertex(7));
+        assert_eq!(pack(Feature::Edge(8)), PackedFeatureId::edge(8));
+        assert_eq!(pack(Feature::Face(9)), PackedFeatureId::face(9));
+        for feature in [Feature::Vertex(1), Feature::Edge(2), Feature::Face(3)] {
+            assert_eq!(unpack(pack(feature)), Some(feature));
+        }
+        assert_eq!(unpack(PackedFeatureId::UNKNOWN), None);
+    }
+}

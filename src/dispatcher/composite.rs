@@ -1,0 +1,106 @@
+//! Composite shapes: parry's routines take them apart, and ask *us* about the parts.
+//!
+//! Parry's own dispatcher hands itself to those routines, so that a dispatcher chained in front
+//! of it never sees the hulls inside of compounds, meshes, height fields and voxels.
+
+use parry3d::math::{Pose, Real};
+use parry3d::query::details::{
+    ContactManifoldsWorkspace, contact_manifolds_composite_shape_composite_shape,
+    contact_manifolds_composite_shape_shape, contact_manifolds_heightfield_composite_shape,
+    contact_manifolds_heightfield_shape_shapes, contact_manifolds_trimesh_shape_shapes,
+    contact_manifolds_voxels_ball_shapes, contact_manifolds_voxels_composite_shape_shapes,
+    contact_manifolds_voxels_shape_shapes, contact_manifolds_voxels_voxels_shapes,
+};
+use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
+use parry3d::shape::{Shape, ShapeType};
+
+/// Updates the manifolds of a pair in which a shape has parts. `false` if none has.
+pub(super) fn contact_manifolds<M, C>(
+    dispatcher: &dyn PersistentQueryDispatcher<M, C>,
+    pos12: &Pose,
+    shapes: [&dyn Shape; 2],
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) -> bool
+where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    use ShapeType::{Ball, HeightField, TriMesh, Voxels};
+    let [s1, s2] = shapes;
+    let composites = [s1.as_composite_shape(), s2.as_composite_shape()];
+    if let [Some(c1), Some(c2)] = composites {
+        contact_manifolds_composite_shape_composite_shape(
+            dispatcher, pos12, c1, c2, prediction, manifolds, workspace,
+        );
+        return true;
+    }
+    match [s1.shape_type(), s2.shape_type()] {
+        [TriMesh, _] | [_, TriMesh] => contact_manifolds_trimesh_shape_shapes(
+            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
+        ),
+        [HeightField, _] | [_, HeightField] => {
+            height_field(dispatcher, pos12, shapes, prediction, manifolds, workspace)
+        }
+        [Voxels, Voxels] => contact_manifolds_voxels_voxels_shapes(
+            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
+        ),
+        [Voxels, Ball] | [Ball, Voxels] => {
+            contact_manifolds_voxels_ball_shapes(pos12, s1, s2, prediction, manifolds);
+        }
+        [Voxels, _] | [_, Voxels] if composites.iter().any(Option::is_some) => {
+            contact_manifolds_voxels_composite_shape_shapes(
+                dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
+            );
+        }
+        [Voxels, _] | [_, Voxels] => contact_manifolds_voxels_shape_shapes(
+            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
+        ),
+        _ => match composites {
+            [Some(c1), _] => contact_manifolds_composite_shape_shape(
+                dispatcher, pos12, c1, s2, prediction, manifolds, workspace, false,
+            ),
+            [_, Some(c2)] => contact_manifolds_composite_shape_shape(
+                dispatcher,
+                &pos12.inverse(),
+                c2,
+                s1,
+                prediction,
+                manifolds,
+                workspace,
+                true,
+            ),
+            _ => return false,
+        },
+    }
+    true
+}
+
+/// A height field against anything; one of the shapes is one.
+fn height_field<M, C>(
+    dispatcher: &dyn PersistentQueryDispatcher<M, C>,
+    pos12: &Pose,
+    [s1, s2]: [&dyn Shape; 2],
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    let pos21 = pos12.inverse();
+    if let (Some(field), Some(other)) = (s1.as_heightfield(), s2.as_composite_shape()) {
+        contact_manifolds_heightfield_composite_shape(
+            dispatcher, pos12, &pos21, field, other, prediction, manifolds, workspace, false,
+        );
+    } else if let (Some(other), Some(field)) = (s1.as_composite_shape(), s2.as_heightfield()) {
+        contact_manifolds_heightfield_composite_shape(
+            dispatcher, &pos21, pos12, field, other, prediction, manifolds, workspace, true,
+        );
+    } else {
+        contact_manifolds_heightfield_shape_shapes(
+            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
+        );
+    }
+}

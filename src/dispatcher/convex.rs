@@ -1,0 +1,124 @@
+//! The contact manifold of two convex shapes, coherently.
+
+use parry3d::math::{Pose, Real};
+use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
+use parry3d::query::{ContactManifold, TrackedContact};
+
+use super::cache;
+use super::pair::{PairVisitor, Scratch};
+use crate::manifold::{self, Contacts};
+use crate::pose::RelativePose;
+use crate::query::{Answer, Proximity, Query};
+use crate::stats::{Cost, SharedStats};
+use crate::support::{Cso, Polytope};
+
+/// Corrected normals of mesh edges can turn a deep overlap into an absurd depth along a face
+/// that the shapes do not meet. As parry does, such points are left out beyond this multiple of
+/// the uncorrected depth.
+const ABSURD_DEPTH: f64 = 5.0;
+
+/// Brings a manifold up to date.
+pub(super) struct UpdateManifold<'a, M, C> {
+    pub pos12: &'a Pose,
+    pub prediction: Real,
+    pub constraints: [Option<&'a dyn NormalConstraints>; 2],
+    pub manifold: &'a mut ContactManifold<M, C>,
+    pub stats: &'a SharedStats,
+}
+
+impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
+    /// `None` if the pair has no answer here (not finite): it is left to parry.
+    type Output = Option<()>;
+
+    #[inline]
+    fn visit<A: Polytope, B: Polytope>(
+        self,
+        shape_1: &A,
+        shape_2: &B,
+        borders: [f64; 2],
+        scratch: &mut Scratch<'_>,
+    ) -> Option<()> {
+        let pose = RelativePose::new(self.pos12)?;
+        let cso = Cso {
+            shape_1,
+            shape_2,
+            pose: &pose,
+        };
+        let max_distance = f64::from(self.prediction) + borders[0] + borders[1];
+        let mut cost = Cost::default();
+        let (answer, stage) = Query {
+            cso: &cso,
+            max_distance,
+            scratch: scratch.epa,
+            cost: &mut cost,
+        }
+        .run(&cache::read(self.manifold))?;
+        self.stats.record(stage, &cost);
+        match answer {
+            Answer::Apart(apart) => cache::write_axis(self.manifold, &apart),
+            Answer::Near(near) => self.write_contacts(&cso, &near, max_distance, borders, scratch),
+        }
+        Some(())
+    }
+}
+
+impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
+    fn write_contacts<A: Polytope, B: Polytope>(
+        self,
+        cso: &Cso<'_, A, B>,
+        near: &Proximity,
+        max_distance: f64,
+        borders: [f64; 2],
+        scratch: &mut Scratch<'_>,
+    ) {
+        let to_2 = self.pos12.rotation.inverse();
+        let mut n1 = near.normal.as_vec3();
+        let mut n2 = to_2 * -n1;
+        let unconstrained = n1;
+        let [c1, c2] = self.constraints;
+        let constrained = c1.is_some() || c2.is_some();
+        if constrained && !(c1, c2).project_local_normals(self.pos12, &mut n1, &mut n2) {
+            // Discarded: there is no contact, but there is a place to start from.
+            cache::write_start(self.manifold, near, cso);
+            return;
+        }
+        let contacts = if n1 == unconstrained {
+            manifold::contacts(cso, near, near.normal, max_distance, scratch.clip)
+        } else {
+            let normal = n1.as_dvec3().normalize();
+            let limit = ABSURD_DEPTH * near.signed_distance.min(0.0);
+            manifold::contacts_along(cso, near, normal, [limit, max_distance], scratch.clip)
+        };
+        self.manifold.local_n1 = n1;
+        self.manifold.local_n2 = n2;
+        write_points(self.manifold, cso, &contacts, borders);
+    }
+}
+
+/// Replaces the manifold's points, and gives each new one the data (the solver's impulses) of
+/// the old one between the same features.
+fn write_points<A: Polytope, B: Polytope, M, C: Default + Copy>(
+    manifold: &mut ContactManifold<M, C>,
+    cso: &Cso<'_, A, B>,
+    contacts: &Contacts,
+    borders: [f64; 2],
+) {
+    let (n1, n2) = (manifold.local_n1.as_dvec3(), manifold.local_n2.as_dvec3());
+    let mut fresh = [None; manifold::MAX_POINTS];
+    for (slot, contact) in fresh.iter_mut().zip(contacts.as_slice()) {
+        let mut point = TrackedContact::<C>::new(
+            (contact.on_1 + n1 * borders[0]).as_vec3(),
+            (cso.pose.point_to_2(contact.on_2) + n2 * borders[1]).as_vec3(),
+            cache::pack(contact.features[0]),
+            cache::pack(contact.features[1]),
+            (contact.distance - borders[0] - borders[1]) as Real,
+        );
+        let same = |old: &&TrackedContact<C>| old.fid1 == point.fid1 && old.fid2 == point.fid2;
+        if let Some(old) = manifold.points.iter().find(same) {
+            point.data = old.data;
+        }
+        *slot = Some(point);
+    }
+    manifold.points.clear();
+    manifold.points.extend(fresh.into_iter().flatten());
+}

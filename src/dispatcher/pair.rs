@@ -1,0 +1,141 @@
+//! From parry's shapes to polytopes that the kernels can work on.
+
+use std::cell::RefCell;
+
+use parry3d::shape::{Shape, ShapeType, Triangle};
+
+use super::hulls::{HullRef, HullTable};
+use crate::epa::EpaScratch;
+use crate::hull::Hull;
+use crate::manifold::ClipScratch;
+use crate::primitive::{CuboidPolytope, TrianglePolytope};
+use crate::support::Polytope;
+
+/// What a thread keeps from query to query: prepared hulls, and memory to work in.
+#[derive(Default)]
+pub(super) struct Workbench {
+    hulls: HullTable,
+    pub epa: EpaScratch,
+    pub clip: ClipScratch,
+}
+
+thread_local! {
+    static WORKBENCH: RefCell<Workbench> = RefCell::default();
+}
+
+/// A polytope with a rounded border of this radius around it.
+struct Solid {
+    core: Core,
+    border: f64,
+}
+
+enum Core {
+    Hull(HullRef),
+    Cuboid(CuboidPolytope),
+    Triangle(TrianglePolytope),
+}
+
+/// Something to do with two polytopes of whatever types.
+pub(super) trait PairVisitor {
+    /// What comes of it.
+    type Output;
+
+    /// `borders` are the radii of the rounded borders around the two polytopes.
+    fn visit<A: Polytope, B: Polytope>(
+        self,
+        shape_1: &A,
+        shape_2: &B,
+        borders: [f64; 2],
+        bench: &mut Scratch<'_>,
+    ) -> Self::Output;
+}
+
+/// The memory to work in, of the [`Workbench`].
+pub(super) struct Scratch<'a> {
+    pub epa: &'a mut EpaScratch,
+    pub clip: &'a mut ClipScratch,
+}
+
+/// Whether a shape is a hull to us, so that pairs with it are ours to answer.
+fn is_hull(shape_type: ShapeType) -> bool {
+    matches!(
+        shape_type,
+        ShapeType::ConvexPolyhedron | ShapeType::RoundConvexPolyhedron
+    )
+}
+
+/// Visits the pair if one of its shapes is a hull and both are polytopes; else `None`.
+#[inline]
+pub(super) fn visit<V: PairVisitor>(
+    shape_1: &dyn Shape,
+    shape_2: &dyn Shape,
+    visitor: V,
+) -> Option<V::Output> {
+    let types = [shape_1.shape_type(), shape_2.shape_type()];
+    if !types.into_iter().any(is_hull) {
+        return None;
+    }
+    WORKBENCH.with_borrow_mut(|bench| {
+        bench.hulls.make_room();
+        let solid_1 = solid(shape_1, types[0], &mut bench.hulls)?;
+        let solid_2 = solid(shape_2, types[1], &mut bench.hulls)?;
+        let borders = [solid_1.border, solid_2.border];
+        let hull = |place| bench.hulls.get(place);
+        let scratch = &mut Scratch {
+            epa: &mut bench.epa,
+            clip: &mut bench.clip,
+        };
+        Some(match (&solid_1.core, &solid_2.core) {
+            (Core::Hull(a), Core::Hull(b)) => {
+                visitor.visit::<Hull, Hull>(hull(*a)?, hull(*b)?, borders, scratch)
+            }
+            (Core::Hull(a), Core::Cuboid(b)) => visitor.visit(hull(*a)?, b, borders, scratch),
+            (Core::Cuboid(a), Core::Hull(b)) => visitor.visit(a, hull(*b)?, borders, scratch),
+            (Core::Hull(a), Core::Triangle(b)) => visitor.visit(hull(*a)?, b, borders, scratch),
+            (Core::Triangle(a), Core::Hull(b)) => visitor.visit(a, hull(*b)?, borders, scratch),
+            _ => return None,
+        })
+    })
+}
+
+fn solid(shape: &dyn Shape, shape_type: ShapeType, hulls: &mut HullTable) -> Option<Solid> {
+    let (core, border) = match shape_type {
+        ShapeType::ConvexPolyhedron => {
+            (Core::Hull(hulls.find(shape.as_convex_polyhedron()?)?), 0.0)
+        }
+        ShapeType::RoundConvexPolyhedron => {
+            let round = shape.as_round_convex_polyhedron()?;
+            (
+                Core::Hull(hulls.find(&round.inner_shape)?),
+                round.border_radius,
+            )
+        }
+        ShapeType::Cuboid => {
+            let extents = shape.as_cuboid()?.half_extents;
+            (Core::Cuboid(CuboidPolytope::new(extents.as_dvec3())), 0.0)
+        }
+        ShapeType::RoundCuboid => {
+            let round = shape.as_round_cuboid()?;
+            let extents = round.inner_shape.half_extents.as_dvec3();
+            (
+                Core::Cuboid(CuboidPolytope::new(extents)),
+                round.border_radius,
+            )
+        }
+        ShapeType::Triangle => (triangle(shape.as_triangle()?)?, 0.0),
+        ShapeType::RoundTriangle => {
+            let round = shape.as_round_triangle()?;
+            (triangle(&round.inner_shape)?, round.border_radius)
+        }
+        _ => return None,
+    };
+    Some(Solid {
+        core,
+        border: border.into(),
+    })
+}
+
+fn triangle(triangle: &Triangle) -> Option<Core> {
+    let corners = [triangle.a, triangle.b, triangle.c].map(|p| p.as_dvec3());
+    TrianglePolytope::new(corners).map(Core::Triangle)
+}

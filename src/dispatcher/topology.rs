@@ -1,0 +1,85 @@
+//! The triangulated surface behind parry's convex polyhedron.
+//!
+//! Parry joins triangles up to 1.5 degrees apart, so that its faces may miss vertices; but it
+//! still lists all edges of the triangulation. Seen from a point inside, the edges around a
+//! vertex have one cyclic order, and neighbours in that order span the triangles again.
+
+use std::cmp::Ordering;
+
+use glam::{DVec2, DVec3};
+use parry3d::shape::ConvexPolyhedron;
+
+use crate::hull::{Hull, HullError};
+
+/// The hull of a polyhedron, with its vertex ids; with new ones where its surface is not a
+/// convex triangulation of all of its points.
+pub(super) fn hull_of(polyhedron: &ConvexPolyhedron) -> Result<Hull, HullError> {
+    let points = polyhedron.points();
+    triangles(polyhedron)
+        .and_then(|triangles| Hull::from_triangles(points.to_vec(), &triangles).ok())
+        .map_or_else(|| Hull::from_points(points), Ok)
+}
+
+fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
+    let points = polyhedron.points();
+    if points.iter().any(|p| !p.is_finite()) {
+        return None;
+    }
+    let inside = points.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / points.len() as f64;
+    let (first, mut targets) = neighbor_rows(points.len(), polyhedron);
+    let mut triangles = Vec::with_capacity(2 * points.len());
+    let mut angles = Vec::new();
+    for v in 0..points.len() {
+        let row = &mut targets[first[v] as usize..first[v + 1] as usize];
+        let here = points[v].as_dvec3();
+        let outward = (here - inside).try_normalize()?;
+        let (x, y) = outward.any_orthonormal_pair();
+        // Turn counter-clockwise about `outward`, whatever the handedness of the pair.
+        let y = if x.cross(y).dot(outward) > 0.0 { y } else { -y };
+        angles.clear();
+        angles.extend(row.iter().map(|&w| {
+            let edge = points[w as usize].as_dvec3() - here;
+            (DVec2::new(edge.dot(x), edge.dot(y)), w)
+        }));
+        angles.sort_unstable_by(|a, b| by_angle(a.0, b.0));
+        for (i, &(_, w)) in angles.iter().enumerate() {
+            let next = angles[(i + 1) % angles.len()].1;
+            // Each triangle is met at all of its corners: keep it at the lowest.
+            if (v as u32) < w && (v as u32) < next {
+                triangles.push([v as u32, w, next]);
+            }
+        }
+    }
+    Some(triangles)
+}
+
+/// Compressed rows of the edges at each vertex.
+fn neighbor_rows(count: usize, polyhedron: &ConvexPolyhedron) -> (Vec<u32>, Vec<u32>) {
+    let mut first = vec![0_u32; count + 1];
+    for edge in polyhedron.edges() {
+        for v in edge.vertices {
+            first[v as usize + 1] += 1;
+        }
+    }
+    for v in 0..count {
+        first[v + 1] += first[v];
+    }
+    let mut fill = first.clone();
+    let mut targets = vec![0_u32; first[count] as usize];
+    for edge in polyhedron.edges() {
+        let [a, b] = edge.vertices;
+        for (from, to) in [(a, b), (b, a)] {
+            targets[fill[from as usize] as usize] = to;
+            fill[from as usize] += 1;
+        }
+    }
+    (first, targets)
+}
+
+/// Counter-clockwise from the positive x axis.
+fn by_angle(a: DVec2, b: DVec2) -> Ordering {
+    let lower = |p: DVec2| p.y < 0.0 || (p.y == 0.0 && p.x < 0.0);
+    lower(a)
+        .cmp(&lower(b))
+        .then_with(|| 0.0_f64.total_cmp(&a.perp_dot(b)))
+}
