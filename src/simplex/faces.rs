@@ -10,9 +10,13 @@ use super::{Nearest, combine};
 /// the digits balances the loss of trusting the normal against the loss of ignoring the interior.
 const SLIVER_SINE: f64 = 1e-8;
 
-/// Below this ratio of a tetrahedron's volume to the product of three edges at a corner, rounding
-/// (some ten half-ulps of that product) decides the sign of the volume: it is taken as flat.
-const FLAT_RATIO: f64 = 1e-14;
+/// Below this ratio of a tetrahedron's volume to the product of three edges at a corner, the outer
+/// sides of its faces have lost half of their digits: all of the faces are tried.
+const FLAT_RATIO: f64 = 1e-8;
+
+/// How well the weights of a tetrahedron must reproduce the origin, relative to a vertex, to be
+/// believed without a look at the faces: above the rounding of all but nearly flat tetrahedra.
+const INSIDE: f64 = 1e-12;
 
 /// Answers for 1 to 4 vertices, given the weights of the nearest point of a triangle.
 #[inline]
@@ -107,14 +111,50 @@ pub fn normalized<const N: usize>(weights: [f64; N]) -> [f64; N] {
     weights.map(|weight| weight / sum)
 }
 
-/// The nearest point of a tetrahedron: the origin if no face has it on its outer side, else the
-/// best of the faces that do. A flat tetrahedron has no inside: its nearest face wins.
+/// The nearest point of a tetrahedron: the origin if inside, else the best of the faces that have
+/// it on their outer side; of all faces, if the tetrahedron is too flat to tell.
 #[inline]
 fn tetrahedron(y: [DVec3; 4], triangle: impl Fn([DVec3; 3]) -> [f64; 3]) -> [f64; 4] {
     let volumes = sub_volumes(y);
-    if volumes.iter().all(|&volume| volume > 0.0) {
-        return normalized(volumes);
+    let inside = normalized(volumes);
+    if !inside.iter().all(|&l| l > 0.0) {
+        return nearest_face(
+            y,
+            volumes.map(|volume| volume * trusted_volume(y)),
+            triangle,
+        )
+        .0;
     }
+    let error = combine(&y, &inside).length_squared();
+    if y.iter()
+        .any(|p| error <= INSIDE * INSIDE * p.length_squared())
+    {
+        return inside;
+    }
+    let face = nearest_face(y, [0.0; 4], triangle);
+    if proves_inside(error, face.1) {
+        inside
+    } else {
+        face.0
+    }
+}
+
+/// Whether a point of the tetrahedron is so much nearer to the origin than all of the faces that
+/// the origin must be inside: else the segment from the point would leave through a nearer face.
+/// The factor 2 keeps the rounding of equal distances from passing as proof.
+#[inline]
+pub fn proves_inside(squared_distance: f64, squared_face_distance: f64) -> bool {
+    4.0 * squared_distance < squared_face_distance
+}
+
+/// The nearest point of the faces that do not have the origin on their inner side, and its squared
+/// distance.
+#[inline]
+fn nearest_face(
+    y: [DVec3; 4],
+    inner: [f64; 4],
+    triangle: impl Fn([DVec3; 3]) -> [f64; 3],
+) -> ([f64; 4], f64) {
     let mut best = ([1.0, 0.0, 0.0, 0.0], f64::INFINITY);
     for (i, [j, k, l]) in [
         (0, [1, 2, 3]),
@@ -122,37 +162,38 @@ fn tetrahedron(y: [DVec3; 4], triangle: impl Fn([DVec3; 3]) -> [f64; 3]) -> [f64
         (2, [0, 1, 3]),
         (3, [0, 1, 2]),
     ] {
-        let inner = volumes[i] > 0.0;
-        if !inner {
+        let skip = inner[i] > 0.0;
+        if !skip {
             let mut lambda = [0.0; 4];
             [lambda[j], lambda[k], lambda[l]] = triangle([y[j], y[k], y[l]]);
             keep_nearer(&mut best, &y, lambda);
         }
     }
-    best.0
+    best
 }
 
-/// Signed volumes of the origin with each face, opposite to vertex i: positive on the inner side.
-/// All zero when the tetrahedron is flat.
+/// Signed volumes of the tetrahedra in which the origin takes the place of one vertex each.
 #[inline]
 fn sub_volumes([a, b, c, d]: [DVec3; 4]) -> [f64; 4] {
-    let volume = corner_volume(b - a, c - a, d - a)
-        .or_else(|| corner_volume(a - b, d - b, c - b))
-        .or_else(|| corner_volume(d - c, a - c, b - c))
-        .or_else(|| corner_volume(c - d, b - d, a - d));
-    let Some(volume) = volume else {
-        return [0.0; 4];
-    };
-    let sign = volume.signum();
     [
-        sign * b.dot((c - b).cross(d - b)),
-        -sign * c.dot((d - c).cross(a - c)),
-        sign * d.dot((a - d).cross(b - d)),
-        -sign * a.dot((b - a).cross(c - a)),
+        b.dot((c - b).cross(d - b)),
+        -c.dot((d - c).cross(a - c)),
+        d.dot((a - d).cross(b - d)),
+        -a.dot((b - a).cross(c - a)),
     ]
 }
 
-/// The signed volume spanned by three edges, unless its sign may be rounding.
+/// The signed volume, measured at the first corner at which it is no sliver; zero if there is none.
+#[inline]
+fn trusted_volume([a, b, c, d]: [DVec3; 4]) -> f64 {
+    corner_volume(b - a, c - a, d - a)
+        .or_else(|| corner_volume(a - b, d - b, c - b))
+        .or_else(|| corner_volume(d - c, a - c, b - c))
+        .or_else(|| corner_volume(c - d, b - d, a - d))
+        .unwrap_or(0.0)
+}
+
+/// The signed volume spanned by three edges, unless they are nearly dependent.
 #[inline]
 fn corner_volume(u: DVec3, v: DVec3, w: DVec3) -> Option<f64> {
     let volume = u.cross(v).dot(w);

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::faces::proves_inside;
 use super::{DistanceSubalgorithm, Nearest, combine};
 
 /// Subsets in increasing order of their bit mask, by Cramer's rule, with the backup procedure
@@ -50,7 +51,7 @@ fn solve<const N: usize>(y: [DVec3; N]) -> [f64; 4] {
             return lambda;
         }
     }
-    backup(&delta, &y, reach)
+    backup(&delta, &y)
 }
 
 /// Tabulates Δ_j(Y_s ∪ {y_j}) for every j outside of s; true if any is positive, so that v(aff Y_s)
@@ -88,16 +89,20 @@ fn certified<const N: usize>(y: &[DVec3; N], lambda: &[f64; 4], reach: f64) -> b
 }
 
 /// The backup procedure: the nearest among all v(aff Y_s) in conv Y_s. Each is a point of the
-/// simplex even if its determinants are rounding, so that the nearest is never a bad choice. (Only
-/// a tetrahedron whose weights do not give the origin cannot be right: it has the origin inside.)
+/// simplex even if its determinants are rounding, so that the nearest is never a bad choice. (The
+/// tetrahedron comes last, and must prove that it has the origin inside.)
 #[cold]
-fn backup<const N: usize>(delta: &Determinants, y: &[DVec3; N], reach: f64) -> [f64; 4] {
+fn backup<const N: usize>(delta: &Determinants, y: &[DVec3; N]) -> [f64; 4] {
     let mut best = ([1.0, 0.0, 0.0, 0.0], f64::INFINITY);
     for s in 1..1 << N {
         if let Some(lambda) = weights::<N>(&delta[s], s) {
             let distance = combine(y, &lambda).length_squared();
-            let flat = s == 0b1111 && distance > (TRUST * reach).powi(2);
-            if distance < best.1 && !flat {
+            let nearer = if s == 0b1111 {
+                proves_inside(distance, best.1)
+            } else {
+                distance < best.1
+            };
+            if nearer {
                 best = (lambda, distance);
             }
         }
