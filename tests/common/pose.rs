@@ -1,0 +1,30 @@
+//! A rigid pose in f64.
+
+use glam::{DQuat, DVec3};
+use parry3d::math::Pose;
+
+/// The place of one shape in the frame of another: `p ↦ rotation · p + translation`.
+#[derive(Clone, Copy, Debug)]
+pub struct ExactPose {
+    pub rotation: DQuat,
+    pub translation: DVec3,
+}
+
+impl ExactPose {
+    pub fn apply(&self, point: DVec3) -> DVec3 {
+        self.rotation * point + self.translation
+    }
+
+    pub fn inverse(&self) -> Self {
+        let rotation = self.rotation.inverse();
+        Self {
+            rotation,
+            translation: rotation * -self.translation,
+        }
+    }
+
+    /// The same pose as the crate is given it.
+    pub fn to_f32(self) -> Pose {
+        Pose::from_parts(self.translation.as_vec3(), self.rotation.as_quat())
+    }
+}
