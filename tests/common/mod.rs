@@ -3,6 +3,8 @@
 #![allow(dead_code)]
 
 pub mod cases;
+pub mod generate;
+pub mod memory;
 pub mod oracle;
 pub mod pose;
 pub mod report;

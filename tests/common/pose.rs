@@ -23,6 +23,14 @@ impl ExactPose {
         }
     }
 
+    /// The nearest pose that f32 can hold, so that the crate and the oracle see the same.
+    pub fn rounded(self) -> Self {
+        Self {
+            rotation: self.rotation.as_quat().as_dquat().normalize(),
+            translation: self.translation.as_vec3().as_dvec3(),
+        }
+    }
+
     /// The same pose as the crate is given it.
     pub fn to_f32(self) -> Pose {
         Pose::from_parts(self.translation.as_vec3(), self.rotation.as_quat())
