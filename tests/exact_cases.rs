@@ -11,14 +11,13 @@
 mod common;
 
 use common::cases::{Case, Hull, cases, hulls, trajectories};
+use common::memory::Memory;
 use common::oracle::{Solid, separation_along};
 use common::report::{Finding, Report};
 use glam::DVec3;
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Real, Vector};
-use parry3d::query::{
-    ClosestPoints, ContactManifold, PersistentQueryDispatcher, QueryDispatcher, Unsupported,
-};
+use parry3d::query::{ClosestPoints, QueryDispatcher, Unsupported};
 use parry3d::shape::SharedShape;
 
 /// Distances and depths, relative to the size of the pair.
@@ -27,8 +26,6 @@ const DISTANCE_TOLERANCE: f64 = 1.0e-5;
 const REGRET_TOLERANCE: f64 = 1.0e-4;
 /// Closer than this to touching, relative to the size of the pair, either sign is right.
 const TOUCHING: f64 = 1.0e-6;
-
-type Manifolds = Vec<ContactManifold<(), ()>>;
 
 /// A case with the shapes to query, which need not be the published polyhedra themselves.
 struct Pair<'a> {
@@ -238,19 +235,14 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// The deepest point of the manifold that comes of what `manifolds` held before.
-    fn manifold(&self, dispatcher: &IsaGjkDispatcher, manifolds: &mut Manifolds) -> Option<Claim> {
-        dispatcher
-            .contact_manifolds(
-                &self.case.pose().to_f32(),
-                &*self.shape_a,
-                &*self.shape_b,
-                self.manifold_prediction(),
-                manifolds,
-                &mut None,
-            )
-            .ok()?;
-        let manifold = manifolds.first()?;
+    /// The deepest point of the manifold that comes of what was remembered.
+    fn manifold(&self, dispatcher: &IsaGjkDispatcher, memory: &mut Memory) -> Option<Claim> {
+        let manifold = memory.update(
+            dispatcher,
+            &self.case.pose().to_f32(),
+            [&self.shape_a, &self.shape_b],
+            self.manifold_prediction(),
+        )?;
         Some(Claim {
             signed_distance: manifold.find_deepest_contact()?.dist.into(),
             normal: manifold.local_n1.as_dvec3(),
@@ -274,7 +266,7 @@ impl<'a> Pair<'a> {
             ),
             (
                 "manifold, cold",
-                self.judge(self.manifold(dispatcher, &mut Manifolds::new())),
+                self.judge(self.manifold(dispatcher, &mut Memory::default())),
             ),
         ];
         for (route, finding) in findings {
@@ -340,7 +332,7 @@ fn trajectories_cold() {
     check_regime("trajectories");
 }
 
-/// One manifold kept from frame to frame, as rapier keeps it.
+/// One memory kept from frame to frame, as rapier keeps it.
 fn check_warm<'a>(
     report: &mut Report,
     route: &str,
@@ -348,10 +340,10 @@ fn check_warm<'a>(
     pair: impl Fn(&'a Case) -> Option<Pair<'a>>,
 ) {
     let dispatcher = IsaGjkDispatcher::default();
-    let mut manifolds = Manifolds::new();
+    let mut memory = Memory::default();
     for pair in trajectory.iter().filter_map(pair) {
-        let warm = pair.manifold(&dispatcher, &mut manifolds);
-        let cold = pair.manifold(&dispatcher, &mut Manifolds::new());
+        let warm = pair.manifold(&dispatcher, &mut memory);
+        let cold = pair.manifold(&dispatcher, &mut Memory::default());
         let mut finding = pair.judge(warm);
         if let (Some(warm), Some(cold)) = (warm, cold) {
             finding.at_most(

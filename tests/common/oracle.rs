@@ -9,6 +9,7 @@ use super::pose::ExactPose;
 /// A convex polyhedron in f64.
 pub struct Solid {
     pub points: Vec<DVec3>,
+    faces: Vec<[u32; 3]>,
     planes: Vec<Plane>,
     edges: Vec<Edge>,
 }
@@ -56,10 +57,16 @@ impl Solid {
             }
         }
         Self {
+            faces: faces.to_vec(),
             points,
             planes,
             edges,
         }
+    }
+
+    /// The same faces over points that moved.
+    pub fn with_points(&self, points: impl Iterator<Item = DVec3>) -> Self {
+        Self::new(points.collect(), &self.faces)
     }
 
     /// The same solid where `pose` puts it.
@@ -77,6 +84,7 @@ impl Solid {
             normals: edge.normals.map(|n| pose.rotation * n),
         };
         Self {
+            faces: self.faces.clone(),
             points: self.points.iter().map(|p| pose.apply(*p)).collect(),
             planes: self.planes.iter().map(place_plane).collect(),
             edges: self.edges.iter().map(place_edge).collect(),
