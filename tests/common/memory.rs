@@ -1,0 +1,51 @@
+//! What rapier keeps about a pair of colliders between frames.
+
+use isa_gjk::IsaGjkDispatcher;
+use parry3d::math::{Pose, Real};
+use parry3d::query::details::ContactManifoldsWorkspace;
+use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
+use parry3d::shape::SharedShape;
+
+pub type Manifold = ContactManifold<(), ()>;
+
+#[derive(Default)]
+pub struct Memory {
+    pub manifolds: Vec<Manifold>,
+    pub workspace: Option<ContactManifoldsWorkspace>,
+}
+
+impl Memory {
+    /// The only manifold of a pair of convex shapes, after another frame.
+    pub fn update(
+        &mut self,
+        dispatcher: &IsaGjkDispatcher,
+        pose: &Pose,
+        shapes: [&SharedShape; 2],
+        prediction: Real,
+    ) -> Option<&Manifold> {
+        let [shape1, shape2] = shapes;
+        dispatcher
+            .contact_manifolds(
+                pose,
+                &**shape1,
+                &**shape2,
+                prediction,
+                &mut self.manifolds,
+                &mut self.workspace,
+            )
+            .ok()?;
+        self.manifolds.first()
+    }
+}
+
+/// What a manifold without a past says.
+pub fn cold_manifold(
+    dispatcher: &IsaGjkDispatcher,
+    pose: &Pose,
+    shapes: [&SharedShape; 2],
+    prediction: Real,
+) -> Option<Manifold> {
+    let mut memory = Memory::default();
+    memory.update(dispatcher, pose, shapes, prediction)?;
+    memory.manifolds.pop()
+}
