@@ -1,0 +1,86 @@
+//! What holds the bodies of a scene together.
+
+use std::f32::consts::PI;
+
+use rapier3d::prelude::*;
+
+use super::world::World;
+
+/// Thick enough that nothing tunnels through it in a frame.
+const WALL: Real = 1.0;
+
+/// Narrow staves have small bounding boxes: a square drum would pair each of its sides with
+/// half of the bodies.
+const STAVES: usize = 12;
+
+/// A closed drum around the z axis, turning about it.
+pub fn drum(world: &mut World, apothem: Real, length: Real) {
+    let body = world
+        .physics
+        .insert_body(RigidBodyBuilder::kinematic_position_based());
+    let outer = apothem + WALL;
+    // Wide enough to close the wedge that opens outwards between two staves.
+    let half_width = outer * (PI / STAVES as Real).tan();
+    for i in 0..STAVES {
+        let turn = Rotation::from_rotation_z(2.0 * PI * i as Real / STAVES as Real);
+        let centre = turn * Vector::new(apothem + WALL / 2.0, 0.0, 0.0);
+        let stave = ColliderBuilder::cuboid(WALL / 2.0, half_width, length / 2.0)
+            .position(Pose::from_parts(centre, turn));
+        world.physics.insert_collider(stave, Some(body));
+    }
+    for side in [-1.0, 1.0] {
+        let end = ColliderBuilder::cuboid(outer, outer, WALL / 2.0).translation(Vector::new(
+            0.0,
+            0.0,
+            side * (length + WALL) / 2.0,
+        ));
+        world.physics.insert_collider(end, Some(body));
+    }
+    world.turn(body);
+}
+
+/// A square floor whose upper side is at height zero.
+pub fn floor(world: &mut World, half_width: Real) {
+    let slab = ColliderBuilder::cuboid(half_width, WALL / 2.0, half_width)
+        .translation(Vector::new(0.0, -WALL / 2.0, 0.0));
+    world.physics.insert_collider(slab, None);
+}
+
+/// Four walls around a square.
+pub fn walls(world: &mut World, half_width: Real, height: Real) {
+    let away = half_width + WALL / 2.0;
+    for (x, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
+        // Thin along its own axis, and long enough along the other to close the corners.
+        let half = |axis: Real| WALL / 2.0 + half_width * (1.0 - axis.abs());
+        let wall = ColliderBuilder::cuboid(half(x), height / 2.0 + WALL, half(z))
+            .translation(Vector::new(x * away, height / 2.0, z * away));
+        world.physics.insert_collider(wall, None);
+    }
+}
+
+/// A square of bumpy ground around height zero, in triangles about as large as `cell`.
+pub fn bumpy_ground(world: &mut World, half_width: Real, cell: Real) -> Result<(), String> {
+    let cells = (2.0 * half_width / cell).ceil() as u32;
+    let bump = |x: Real, z: Real| cell * 0.4 * ((x / cell).sin() + (0.8 * z / cell).cos());
+    let mut points = Vec::new();
+    for i in 0..=cells {
+        for k in 0..=cells {
+            let along = |step: u32| half_width * (2.0 * step as Real / cells as Real - 1.0);
+            let (x, z) = (along(i), along(k));
+            points.push(Vector::new(x, bump(x, z), z));
+        }
+    }
+    let mut triangles = Vec::new();
+    for i in 0..cells {
+        for k in 0..cells {
+            let corner = i * (cells + 1) + k;
+            let next = corner + cells + 1;
+            triangles.push([corner, corner + 1, next]);
+            triangles.push([corner + 1, next + 1, next]);
+        }
+    }
+    let mesh = ColliderBuilder::trimesh(points, triangles)
+        .map_err(|error| format!("the ground is no valid mesh: {error}"))?;
+    world.physics.insert_collider(mesh, None);
+    Ok(())
+}

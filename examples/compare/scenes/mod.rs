@@ -1,0 +1,165 @@
+//! Deterministic worlds to compare dispatchers on; the same parameters give the same world.
+
+mod build;
+mod containers;
+pub mod hulls;
+mod world;
+
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use isa_gjk::IsaGjkDispatcher;
+
+pub use world::World;
+
+/// What happens in a world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scene {
+    /// Hulls tumbling in a closed drum that turns about its horizontal axis.
+    Drum,
+    /// Hulls dropped between four walls.
+    Pile,
+    /// Towers of prisms, eight high.
+    Stack,
+    /// Towers of thin coins, sixteen high.
+    Coins,
+    /// A large floor of resting hulls, nearly all asleep, and a few that bounce.
+    Asleep,
+    /// A pile of cuboids: no hull at all.
+    Cuboids,
+    /// A pile of balls: no hull at all.
+    Balls,
+    /// A pile of balls, cuboids, capsules, cylinders, cones and hulls.
+    Mixed,
+    /// A pile of bodies made of two hulls each.
+    Compound,
+    /// Hulls dropped on a bumpy triangle mesh.
+    Trimesh,
+}
+
+impl Scene {
+    /// Every scene.
+    pub const ALL: [Self; 10] = [
+        Self::Drum,
+        Self::Pile,
+        Self::Stack,
+        Self::Coins,
+        Self::Asleep,
+        Self::Cuboids,
+        Self::Balls,
+        Self::Mixed,
+        Self::Compound,
+        Self::Trimesh,
+    ];
+
+    /// The name on the command line and in tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Drum => "drum",
+            Self::Pile => "pile",
+            Self::Stack => "stack",
+            Self::Coins => "coins",
+            Self::Asleep => "asleep",
+            Self::Cuboids => "cuboids",
+            Self::Balls => "balls",
+            Self::Mixed => "mixed",
+            Self::Compound => "compound",
+            Self::Trimesh => "trimesh",
+        }
+    }
+
+    /// A number of bodies that keeps a frame within a few tens of milliseconds.
+    pub const fn default_bodies(self) -> u32 {
+        match self {
+            Self::Drum | Self::Mixed => 512,
+            Self::Pile => 400,
+            Self::Stack => 128,
+            Self::Coins | Self::Compound | Self::Trimesh => 256,
+            Self::Asleep | Self::Cuboids | Self::Balls => 1000,
+        }
+    }
+
+    /// Whether the scene can be filled with any hull: towers stand on prisms only, and some
+    /// scenes have no hulls.
+    pub const fn takes_any_hull(self) -> bool {
+        matches!(
+            self,
+            Self::Drum | Self::Pile | Self::Asleep | Self::Mixed | Self::Compound | Self::Trimesh
+        )
+    }
+}
+
+impl fmt::Display for Scene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Scene {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::ALL
+            .into_iter()
+            .find(|scene| scene.name() == text)
+            .ok_or_else(|| format!("choose one of {}", Self::ALL.map(Self::name).join(", ")))
+    }
+}
+
+/// Where the hulls of a scene come from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum HullSource {
+    /// Points drawn uniformly on a sphere, each of them a vertex.
+    Random {
+        /// Vertices of each hull.
+        vertices: u32,
+    },
+    /// Upright prisms over regular polygons.
+    Prism {
+        /// Sides of the polygon.
+        sides: u32,
+    },
+    /// Hulls of objects that robots handle, from the test data of this crate.
+    Real,
+    /// The hull of the vertices of one Wavefront file.
+    File(PathBuf),
+}
+
+impl fmt::Display for HullSource {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Random { vertices } => write!(f, "random hulls of {vertices} vertices"),
+            Self::Prism { sides } => write!(f, "prisms of {sides} sides"),
+            Self::Real => f.write_str("hulls of real objects"),
+            Self::File(path) => write!(f, "hull of {}", path.display()),
+        }
+    }
+}
+
+/// Everything a scene is built from.
+#[derive(Clone, Debug)]
+pub struct SceneParams {
+    /// Where the hulls come from.
+    pub hulls: HullSource,
+    /// How many different hulls to make or to take, if the source has that many.
+    pub distinct: u32,
+    /// Dynamic bodies.
+    pub bodies: u32,
+    /// Seed of shapes and poses.
+    pub seed: u64,
+    /// Whether rapier may keep the contacts of pairs that hardly moved.
+    pub recycling: bool,
+}
+
+/// Builds `scene`; without a dispatcher, rapier's own narrow phase answers.
+pub fn build(
+    scene: Scene,
+    params: &SceneParams,
+    dispatcher: Option<IsaGjkDispatcher>,
+) -> Result<World, String> {
+    let mut world = World::new(dispatcher);
+    world.physics.integration_parameters.contact_recycling = params.recycling;
+    build::fill(&mut world, scene, params)?;
+    Ok(world)
+}

@@ -1,0 +1,90 @@
+//! A rapier world with the dispatcher of choice.
+
+use isa_gjk::IsaGjkDispatcher;
+use rapier3d::prelude::*;
+
+/// Radians per second at which a drum turns.
+const DRUM_SPEED: Real = 0.5;
+
+/// All of rapier's sets, and the drum that turns in them.
+pub struct World {
+    /// The sets and the pipeline, whose counters hold the times of the last step.
+    pub physics: PhysicsWorld,
+    drum: Option<RigidBodyHandle>,
+    steps: u32,
+}
+
+impl World {
+    /// An empty world; `None` leaves rapier its own dispatcher.
+    pub fn new(dispatcher: Option<IsaGjkDispatcher>) -> Self {
+        let narrow_phase = dispatcher.map_or_else(NarrowPhase::new, |dispatcher| {
+            NarrowPhase::with_query_dispatcher(dispatcher)
+        });
+        Self {
+            physics: PhysicsWorld {
+                narrow_phase,
+                ..PhysicsWorld::default()
+            },
+            drum: None,
+            steps: 0,
+        }
+    }
+
+    /// Makes a kinematic body turn about the z axis.
+    pub(super) fn turn(&mut self, drum: RigidBodyHandle) {
+        self.drum = Some(drum);
+    }
+
+    /// One frame.
+    pub fn step(&mut self) {
+        self.steps += 1;
+        if let Some(drum) = self.drum {
+            // From the count of steps, so that rounding does not add up over a long run.
+            let dt = self.physics.integration_parameters.dt;
+            let angle = DRUM_SPEED * dt * self.steps as Real;
+            self.physics.bodies[drum].set_next_kinematic_rotation(Rotation::from_rotation_z(angle));
+        }
+        self.physics.step();
+    }
+
+    /// Kinetic energy of the dynamic bodies.
+    pub fn kinetic_energy(&self) -> f64 {
+        self.dynamic_bodies()
+            .map(|body| f64::from(body.kinetic_energy()))
+            .sum()
+    }
+
+    /// How many dynamic bodies sleep.
+    pub fn sleeping(&self) -> usize {
+        self.dynamic_bodies()
+            .filter(|body| body.is_sleeping())
+            .count()
+    }
+
+    /// FNV-1a over the bits of every pose: equal hashes mean equal histories.
+    pub fn pose_hash(&self) -> u64 {
+        let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+        for (_, body) in self.physics.bodies.iter() {
+            let Pose {
+                translation,
+                rotation,
+                ..
+            } = *body.position();
+            for value in translation
+                .to_array()
+                .into_iter()
+                .chain(rotation.to_array())
+            {
+                for byte in value.to_bits().to_le_bytes() {
+                    hash = (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3);
+                }
+            }
+        }
+        hash
+    }
+
+    fn dynamic_bodies(&self) -> impl Iterator<Item = &RigidBody> {
+        let bodies = self.physics.bodies.iter().map(|(_, body)| body);
+        bodies.filter(|body| body.is_dynamic())
+    }
+}
