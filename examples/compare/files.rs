@@ -7,56 +7,66 @@ use std::path::Path;
 use crate::measure::{Frame, Run};
 use crate::report::Report;
 
-/// Writes the figures of the table.
-pub fn write_json(path: &Path, report: &Report) -> Result<(), String> {
-    write_file(path, |file| {
-        serde_json::to_writer_pretty(&mut *file, report)?;
-        writeln!(file)
+/// Creates the file at `path`, if there is to be one.
+pub fn create(path: Option<&Path>) -> Result<Option<BufWriter<File>>, String> {
+    path.map(|path| {
+        File::create(path)
+            .map(BufWriter::new)
+            .map_err(|error| format!("cannot write {}: {error}", path.display()))
     })
+    .transpose()
+}
+
+/// Writes the figures of the table.
+pub fn write_json(mut file: BufWriter<File>, report: &Report) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut file, report)?;
+    writeln!(file)?;
+    file.flush()
 }
 
 /// Writes the times of every frame, of both worlds side by side.
-pub fn write_csv(path: &Path, runs: &[Run]) -> Result<(), String> {
-    write_file(path, |file| {
-        writeln!(
-            file,
-            "run,frame,counted,default_step_ms,default_broad_ms,default_narrow_ms,\
-             default_solver_ms,default_pairs,default_touching,ours_step_ms,ours_broad_ms,\
-             ours_narrow_ms,ours_solver_ms,ours_pairs,ours_touching"
-        )?;
-        for (number, run) in runs.iter().enumerate() {
-            let frames = run.default.frames.iter().zip(&run.ours.frames);
-            for (index, (default, ours)) in frames.enumerate() {
-                let counted = u8::from(default.counted);
-                let (default, ours) = (columns(default), columns(ours));
-                writeln!(file, "{number},{index},{counted},{default},{ours}")?;
-            }
+pub fn write_csv(mut file: BufWriter<File>, runs: &[Run]) -> io::Result<()> {
+    writeln!(
+        file,
+        "run,frame,counted,{},{}",
+        header("default"),
+        header("ours")
+    )?;
+    for (number, run) in runs.iter().enumerate() {
+        let frames = run.default.frames.iter().zip(&run.ours.frames);
+        for (index, (default, ours)) in frames.enumerate() {
+            let counted = u8::from(default.counted);
+            let (default, ours) = (columns(default), columns(ours));
+            writeln!(file, "{number},{index},{counted},{default},{ours}")?;
         }
-        Ok(())
-    })
+    }
+    file.flush()
+}
+
+fn header(side: &str) -> String {
+    [
+        "step_ms",
+        "broad_ms",
+        "narrow_ms",
+        "solver_ms",
+        "ccd_ms",
+        "pairs",
+        "touching",
+    ]
+    .map(|column| format!("{side}_{column}"))
+    .join(",")
 }
 
 fn columns(frame: &Frame) -> String {
     let times = &frame.times;
     format!(
-        "{:.6},{:.6},{:.6},{:.6},{},{}",
+        "{:.6},{:.6},{:.6},{:.6},{:.6},{},{}",
         times.step,
         times.broad_phase,
         times.narrow_phase,
         times.solver,
+        times.ccd,
         frame.pairs,
         frame.touching
     )
-}
-
-fn write_file(
-    path: &Path,
-    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
-) -> Result<(), String> {
-    let written = File::create(path).and_then(|file| {
-        let mut file = BufWriter::new(file);
-        write(&mut file)?;
-        file.flush()
-    });
-    written.map_err(|error| format!("cannot write {}: {error}", path.display()))
 }

@@ -31,6 +31,9 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     let params = options.scene_params()?;
     let length = options.run_length();
     let progress = progress_bar(options, length.steps());
+    // Before the run, so that a wrong path does not cost it.
+    let json = files::create(options.json.as_deref())?;
+    let csv = files::create(options.csv.as_deref())?;
     let mut runs = Vec::new();
     for _ in 0..options.repeat {
         runs.push(measure::run(options.scene, &params, length, &progress)?);
@@ -38,11 +41,11 @@ fn run(options: &Options) -> Result<(), Box<dyn Error>> {
     progress.finish_and_clear();
 
     let report = Report::new(options.scene, &params, length, &runs);
-    if let Some(path) = &options.json {
-        files::write_json(path, &report)?;
+    if let Some(file) = json {
+        files::write_json(file, &report)?;
     }
-    if let Some(path) = &options.csv {
-        files::write_csv(path, &runs)?;
+    if let Some(file) = csv {
+        files::write_csv(file, &runs)?;
     }
     match write!(io::stdout().lock(), "{report}") {
         // Whoever reads us has seen enough, as `head` does.

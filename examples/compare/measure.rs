@@ -36,6 +36,8 @@ pub struct Times {
     pub narrow_phase: f64,
     /// Solving the contacts.
     pub solver: f64,
+    /// Keeping fast bodies from tunnelling.
+    pub ccd: f64,
 }
 
 /// One frame after the warm-up.
@@ -55,11 +57,13 @@ pub struct Frame {
 pub struct Side {
     /// Every frame after the warm-up, in order.
     pub frames: Vec<Frame>,
-    /// For each counted frame and touching pair, how deep its deepest point is; negative if
-    /// the pair is only close.
+    /// For each counted frame and touching pair, how deep its deepest point is by its manifolds;
+    /// negative if the pair is only close.
     pub depths: Vec<Real>,
     /// Of all dynamic bodies at the end, in joules.
     pub kinetic_energy: f64,
+    /// Of all dynamic bodies at the end, in metres.
+    pub mean_height: f64,
     /// Dynamic bodies asleep at the end.
     pub sleeping: usize,
     /// Of all poses at the end.
@@ -155,6 +159,7 @@ impl Recorder {
             frames: self.frames,
             depths: self.depths,
             kinetic_energy: self.world.kinetic_energy(),
+            mean_height: self.world.mean_height(),
             sleeping: self.world.sleeping(),
             pose_hash: self.world.pose_hash(),
         }
@@ -174,5 +179,6 @@ fn times(world: &World) -> Times {
         broad_phase: counters.broad_phase_time_ms(),
         narrow_phase: counters.narrow_phase_time_ms(),
         solver: counters.solver_time_ms(),
+        ccd: counters.ccd.toi_computation_time.time_ms(),
     }
 }

@@ -5,8 +5,8 @@ use std::str::FromStr;
 
 use clap::{Parser, ValueEnum, value_parser};
 
-use crate::measure::{BLOCK, RunLength};
-use crate::scenes::{HullSource, Scene, SceneParams};
+use crate::measure::RunLength;
+use crate::scenes::{HullSource, Hulls, Scene, SceneParams};
 
 /// Steps two equal rapier worlds in turn, one with rapier's own narrow phase and one with
 /// isa-gjk, and prints what each cost.
@@ -39,8 +39,8 @@ pub struct Options {
     #[arg(long, value_parser = value_parser!(u32).range(1..=100_000))]
     distinct: Option<u32>,
 
-    /// Frames to step after the warm-up
-    #[arg(long, default_value_t = 320, value_parser = value_parser!(u32).range(2..))]
+    /// Frames to step after the warm-up, at least 2
+    #[arg(long, default_value_t = 480, value_parser = value_parser!(u32).range(2..))]
     frames: u32,
 
     /// Frames to step before counting
@@ -127,16 +127,16 @@ impl Options {
     }
 
     fn hull_source(&self) -> Result<HullSource, String> {
-        let shape = match &self.shape {
-            Some(_) if !self.scene.takes_any_hull() => {
+        let shape = match (&self.shape, self.scene.hulls()) {
+            (Some(shape), Hulls::Any) => shape,
+            (None | Some(Shape::Prism), Hulls::Prisms) => &Shape::Prism,
+            (None, Hulls::Any | Hulls::None) => &Shape::Random,
+            (Some(_), Hulls::Prisms | Hulls::None) => {
                 return Err(format!(
                     "the scene {} makes its own shapes: leave --shape out, or choose another scene",
                     self.scene
                 ));
             }
-            Some(shape) => shape,
-            None if matches!(self.scene, Scene::Stack | Scene::Coins) => &Shape::Prism,
-            None => &Shape::Random,
         };
         if self.sides.is_some() && !matches!(shape, Shape::Prism) {
             return Err("--sides is for prisms: add --shape prism".to_owned());
@@ -156,6 +156,3 @@ impl Options {
         })
     }
 }
-
-/// The first frame of a block is not counted, so that a run needs a second one.
-const _: () = assert!(BLOCK >= 2);

@@ -6,7 +6,7 @@ use isa_gjk::{Stage, Stats};
 use serde::Serialize;
 
 use crate::measure::{BLOCK, Frame, Run, RunLength, Side};
-use crate::scenes::{Scene, SceneParams};
+use crate::scenes::{Hulls, Scene, SceneParams};
 
 /// Everything the table shows.
 #[derive(Serialize)]
@@ -61,7 +61,10 @@ impl Report {
         let hashes = |run: &Run| (run.default.pose_hash, run.ours.pose_hash);
         Self {
             scene: scene.name(),
-            hulls: params.hulls.to_string(),
+            hulls: match scene.hulls() {
+                Hulls::None => "no hulls".to_owned(),
+                Hulls::Prisms | Hulls::Any => params.hulls.to_string(),
+            },
             bodies: params.bodies,
             seed: params.seed,
             recycling: params.recycling,
@@ -85,6 +88,7 @@ fn figures(runs: &[Run]) -> Vec<Figure> {
         time("broad phase", |frame| frame.times.broad_phase),
         time("narrow phase", |frame| frame.times.narrow_phase),
         time("solver", |frame| frame.times.solver),
+        time("ccd", |frame| frame.times.ccd),
         other("pairs", "", |side| per_frame(side, |f| f.pairs as f64)),
         other("touching pairs", "", |side| {
             per_frame(side, |f| f.touching as f64)
@@ -92,6 +96,7 @@ fn figures(runs: &[Run]) -> Vec<Figure> {
         other("deepest penetration", "mm", |side| depth(side, 1.0)),
         other("99th percentile", "mm", |side| depth(side, 0.99)),
         other("kinetic energy at the end", "J", |side| side.kinetic_energy),
+        other("mean height at the end", "m", |side| side.mean_height),
         other("asleep at the end", "", |side| side.sleeping as f64),
     ]
 }

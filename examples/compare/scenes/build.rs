@@ -8,11 +8,13 @@ use super::{Scene, SceneParams, containers, hulls};
 
 /// Distance between the centres of neighbours at the start, in bounding diameters.
 const SPACING: Real = 1.1;
+/// Below and between the parts of a tower, so that it does not start in exact touch.
+const GAP: Real = 0.001;
 const TOWER: usize = 8;
 const COIN_TOWER: usize = 16;
 const COIN_HALF_HEIGHT: Real = 0.03;
 /// One bouncing hull for so many that sleep.
-const SLEEPERS_PER_BOUNCER: usize = 250;
+const SLEEPERS_PER_BOUNCER: usize = 100;
 
 /// Puts the bodies of `scene` and what holds them into an empty world.
 pub fn fill(world: &mut World, scene: Scene, params: &SceneParams) -> Result<(), String> {
@@ -24,6 +26,7 @@ pub fn fill(world: &mut World, scene: Scene, params: &SceneParams) -> Result<(),
         shapes,
         random,
         bodies: params.bodies as usize,
+        can_sleep: scene == Scene::Asleep,
     };
     match scene {
         Scene::Drum => filler.drum(),
@@ -45,7 +48,7 @@ fn shapes(
     random: &mut Rand32,
 ) -> Result<Vec<SharedShape>, String> {
     let size = |random: &mut Rand32| hulls::RADIUS * (0.3 + 0.4 * random.rand_float());
-    let count = params.distinct;
+    let count = params.distinct.min(params.bodies);
     Ok(match scene {
         Scene::Cuboids => (0..count)
             .map(|_| SharedShape::cuboid(size(random), size(random), size(random)))
@@ -106,6 +109,8 @@ struct Filler<'a> {
     reach: Real,
     random: Rand32,
     bodies: usize,
+    /// A pile that falls asleep costs nothing, and its figures would say so of both worlds.
+    can_sleep: bool,
 }
 
 impl Filler<'_> {
@@ -126,7 +131,7 @@ impl Filler<'_> {
         };
         for (i, &cell) in cells.iter().take(self.bodies).enumerate() {
             let pose = self.tumbled(cell);
-            self.insert(i, pose, true);
+            self.insert(i, pose);
         }
     }
 
@@ -164,11 +169,11 @@ impl Filler<'_> {
             let shake = 0.05 * self.reach;
             let cell = Vector::new(x + self.within(shake), y, z + self.within(shake));
             let pose = self.tumbled(cell);
-            self.insert(i, pose, true);
+            self.insert(i, pose);
         }
     }
 
-    /// Upright towers, kept awake: what is asked is the cost of contacts at rest.
+    /// Upright towers.
     fn towers(&mut self, high: usize) {
         let towers = self.bodies.div_ceil(high);
         let side = (towers as Real).sqrt().ceil() as usize;
@@ -177,7 +182,7 @@ impl Filler<'_> {
         let mut top = 0.0;
         for i in 0..self.bodies {
             if i % high == 0 {
-                top = 0.0;
+                top = GAP;
             }
             let half_height = self.shape(i).compute_local_aabb().half_extents().y;
             let (x, z) = square_cell(i / high, side, spacing);
@@ -188,8 +193,8 @@ impl Filler<'_> {
                 z + self.within(shake),
             );
             let yaw = Rotation::from_rotation_y(self.within(std::f32::consts::PI));
-            self.insert(i, Pose::from_parts(centre, yaw), false);
-            top += 2.0 * half_height;
+            self.insert(i, Pose::from_parts(centre, yaw));
+            top += 2.0 * half_height + GAP;
         }
     }
 
@@ -202,13 +207,13 @@ impl Filler<'_> {
         for i in 0..self.bodies - bouncers {
             let (x, z) = square_cell(i, side, spacing);
             let pose = resting_pose(self.shape(i), x, z);
-            self.insert(i, pose, true);
+            self.insert(i, pose);
         }
         for i in 0..bouncers {
             let (x, z) = square_cell(i * side, side, spacing);
-            let away = Vector::new(x - 2.0 * spacing, 4.0 * self.reach, z);
+            let away = Vector::new(x - 3.0 * spacing, 4.0 * self.reach, z);
             let pose = self.tumbled(away);
-            let collider = self.insert(i, pose, false);
+            let collider = self.insert(i, pose);
             let collider = &mut self.world.physics.colliders[collider];
             collider.set_restitution(1.0);
             collider.set_restitution_combine_rule(CoefficientCombineRule::Max);
@@ -219,8 +224,10 @@ impl Filler<'_> {
         &self.shapes[i % self.shapes.len()]
     }
 
-    fn insert(&mut self, i: usize, pose: Pose, can_sleep: bool) -> ColliderHandle {
-        let body = RigidBodyBuilder::dynamic().pose(pose).can_sleep(can_sleep);
+    fn insert(&mut self, i: usize, pose: Pose) -> ColliderHandle {
+        let body = RigidBodyBuilder::dynamic()
+            .pose(pose)
+            .can_sleep(self.can_sleep);
         let collider = ColliderBuilder::new(self.shape(i).clone());
         self.world.physics.insert(body, collider).1
     }

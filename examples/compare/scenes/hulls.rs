@@ -2,7 +2,7 @@
 
 use std::f32::consts::PI;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use oorandom::Rand32;
 use rapier3d::prelude::*;
@@ -16,6 +16,8 @@ pub const RADIUS: Real = 0.5;
 const FILE_RADIUS: Real = 0.28;
 /// Sheets are no objects to pile up: they are left out below this ratio of thickness to size.
 const THINNEST: f64 = 0.03;
+/// Volume over the cube of the bounding radius below which a hull counts as flat.
+const FLAT: Real = 1e-5;
 /// Beginnings of the names of shapes that come from real objects.
 const REAL: [&str; 5] = ["gr_", "husky_", "panda_", "pb_", "rs_"];
 
@@ -66,9 +68,18 @@ pub fn prism(sides: u32, half_height: Real) -> Result<SharedShape, String> {
     hull(&points, &format!("a prism of {sides} sides"))
 }
 
+/// The hull of `points`, if it is a solid: rapier gives flat ones no mass.
 fn hull(points: &[Vector], origin: &str) -> Result<SharedShape, String> {
-    SharedShape::convex_hull(points).ok_or_else(|| {
-        format!("no solid hull around {origin}: give at least 4 points that are not all in one plane and not too close together")
+    let shape = SharedShape::convex_hull(points);
+    let solid = shape.filter(|shape| {
+        let size = shape.compute_local_bounding_sphere().radius;
+        shape.mass_properties(1.0).mass() > FLAT * size.powi(3)
+    });
+    solid.ok_or_else(|| {
+        format!(
+            "no solid hull around {origin}: use points that are not all in one plane, and fewer \
+             if many are almost in the same place"
+        )
     })
 }
 
@@ -112,7 +123,7 @@ fn read_json(path: &Path) -> Result<Value, String> {
 }
 
 /// The `v` lines of a Wavefront file: a hull needs nothing else of it.
-fn obj_points(path: &PathBuf) -> Result<Vec<Vector>, String> {
+fn obj_points(path: &Path) -> Result<Vec<Vector>, String> {
     let text = read(path)?;
     let points = text
         .lines()

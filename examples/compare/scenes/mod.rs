@@ -80,13 +80,18 @@ impl Scene {
         }
     }
 
-    /// Whether the scene can be filled with any hull: towers stand on prisms only, and some
-    /// scenes have no hulls.
-    pub const fn takes_any_hull(self) -> bool {
-        matches!(
-            self,
-            Self::Drum | Self::Pile | Self::Asleep | Self::Mixed | Self::Compound | Self::Trimesh
-        )
+    /// Which hulls the scene can be filled with.
+    pub const fn hulls(self) -> Hulls {
+        match self {
+            Self::Cuboids | Self::Balls => Hulls::None,
+            Self::Stack | Self::Coins => Hulls::Prisms,
+            Self::Drum
+            | Self::Pile
+            | Self::Asleep
+            | Self::Mixed
+            | Self::Compound
+            | Self::Trimesh => Hulls::Any,
+        }
     }
 }
 
@@ -105,6 +110,17 @@ impl FromStr for Scene {
             .find(|scene| scene.name() == text)
             .ok_or_else(|| format!("choose one of {}", Self::ALL.map(Self::name).join(", ")))
     }
+}
+
+/// Which hulls a scene can be filled with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Hulls {
+    /// It has none.
+    None,
+    /// Towers stand on prisms only.
+    Prisms,
+    /// From any source.
+    Any,
 }
 
 /// Where the hulls of a scene come from.

@@ -61,6 +61,12 @@ impl World {
             .count()
     }
 
+    /// Mean height of the dynamic bodies: it tells whether what was stacked still stands.
+    pub fn mean_height(&self) -> f64 {
+        let heights = self.dynamic_bodies().map(|body| body.translation().y);
+        heights.map(f64::from).sum::<f64>() / self.dynamic_bodies().count().max(1) as f64
+    }
+
     /// FNV-1a over the bits of every pose: equal hashes mean equal histories.
     pub fn pose_hash(&self) -> u64 {
         let mut hash = 0xcbf2_9ce4_8422_2325_u64;
