@@ -10,6 +10,9 @@ use super::{Nearest, combine};
 /// the digits balances the loss of trusting the normal against the loss of ignoring the interior.
 const SLIVER_SINE: f64 = 1e-8;
 
+/// Above this sine of a corner, the product of its edges is as good a normal as that of any other.
+const WIDE_SINE: f64 = 1e-2;
+
 /// Below this ratio of a tetrahedron's volume to the product of three edges at a corner, the outer
 /// sides of its faces have lost half of their digits: all of the faces are tried.
 const FLAT_RATIO: f64 = 1e-8;
@@ -88,10 +91,20 @@ pub fn nearest_in_sliver(y: [DVec3; 3], inside: [f64; 3]) -> [f64; 3] {
 }
 
 /// A triangle's normal, of twice its area's length, and whether the triangle is a sliver.
-/// The product of the two shortest edges carries the least rounding.
 #[inline]
 pub fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, bool) {
     let (ab, bc, ca) = (b - a, c - b, a - c);
+    let normal = ca.cross(ab);
+    let product = ca.length_squared() * ab.length_squared();
+    if normal.length_squared() > WIDE_SINE * WIDE_SINE * product {
+        return (normal, false);
+    }
+    widest_corner([ab, bc, ca])
+}
+
+/// The normal as the product of the two shortest edges, which carries the least rounding.
+#[cold]
+fn widest_corner([ab, bc, ca]: [DVec3; 3]) -> (DVec3, bool) {
     let [x, y, z] = [ab, bc, ca].map(DVec3::length_squared);
     let (normal, product) = if x >= y && x >= z {
         (bc.cross(ca), y * z)
