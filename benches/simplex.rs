@@ -16,11 +16,11 @@ fn cube(random: &mut Rand64) -> DVec3 {
 
 /// Vertices of a Minkowski difference of unit size that lies near the origin, each found by looking
 /// from the nearest point of the previous ones, as GJK does: a support point of a random cloud.
-fn simplices<const N: usize>() -> Vec<[DVec3; N]> {
+pub fn simplices<const N: usize>() -> Vec<[DVec3; N]> {
     let mut random = Rand64::new(1988);
     let mut found = Vec::with_capacity(SIMPLICES);
     while found.len() < SIMPLICES {
-        let offset = cube(&mut random).normalize_or(DVec3::X) * (0.5 + random.rand_float());
+        let offset = cube(&mut random).normalize_or(DVec3::X) * (1.0 + random.rand_float());
         let cloud: Vec<DVec3> = (0..32)
             .map(|_| offset + cube(&mut random).normalize_or(DVec3::X))
             .collect();
@@ -39,12 +39,14 @@ fn run_to_size<const N: usize>(cloud: &[DVec3]) -> Option<[DVec3; N]> {
         let nearest = Voronoi::nearest(&simplex);
         let kept = (0..simplex.len()).filter(|i| nearest.face >> i & 1 == 1);
         simplex = kept.map(|i| simplex[i]).collect();
-        let support = |p: &DVec3| -p.dot(nearest.point);
-        simplex.push(
-            *cloud
-                .iter()
-                .max_by(|a, b| support(a).total_cmp(&support(b)))?,
-        );
+        let v = nearest.point;
+        let support = *cloud
+            .iter()
+            .min_by(|a, b| v.dot(**a).total_cmp(&v.dot(**b)))?;
+        if v.dot(v - support) <= 1e-12 * v.length_squared() {
+            break;
+        }
+        simplex.push(support);
     }
     None
 }
