@@ -14,9 +14,8 @@ fn cube(random: &mut Rand64) -> DVec3 {
     DVec3::from_array(std::array::from_fn(|_| 2.0 * random.rand_float() - 1.0))
 }
 
-/// Vertices of a Minkowski difference of unit size that lies near the origin, each found by looking
-/// from the nearest point of the previous ones, as GJK does: a support point of a random cloud.
-pub fn simplices<const N: usize>() -> Vec<[DVec3; N]> {
+/// Simplices GJK builds on clouds of unit size, whose hulls lie near the origin.
+fn simplices<const N: usize>() -> Vec<[DVec3; N]> {
     let mut random = Rand64::new(1988);
     let mut found = Vec::with_capacity(SIMPLICES);
     while found.len() < SIMPLICES {

@@ -29,13 +29,25 @@ pub struct Combination<const N: usize> {
 }
 
 impl<const N: usize> Combination<N> {
-    /// Combines the vertices with positive weights, scaled to sum 1.
+    /// Combines the vertices with the weights, scaled to sum 1, if all are positive: if the point is
+    /// in the interior.
     #[inline]
-    pub fn weighted(y: [DVec3; N], weights: [f64; N]) -> Self {
-        let scale = 1.0 / weights.iter().sum::<f64>();
-        let lambda = weights.map(|weight| weight * scale);
-        let point = (0..N).fold(DVec3::ZERO, |sum, i| sum + y[i] * lambda[i]);
-        Self { point, lambda }
+    pub fn interior(y: [DVec3; N], weights: [f64; N]) -> Option<Self> {
+        let positive = weights.iter().all(|&weight| weight > 0.0);
+        if positive {
+            Self::weighted(y, weights)
+        } else {
+            None
+        }
+    }
+
+    /// Combines the vertices with the weights, scaled to sum 1, unless these overflow.
+    #[inline]
+    pub fn weighted(y: [DVec3; N], weights: [f64; N]) -> Option<Self> {
+        let sum = weights.iter().sum::<f64>();
+        let lambda = weights.map(|weight| weight / sum);
+        let point = (0..N).fold(DVec3::ZERO, |point, i| point + y[i] * lambda[i]);
+        sum.is_finite().then_some(Self { point, lambda })
     }
 
     /// The combination that is vertex i alone.
@@ -132,11 +144,8 @@ pub fn nearest_edge(a: DVec3, b: DVec3, c: DVec3, chosen: [bool; 3]) -> Combinat
 #[cold]
 pub fn nearest_in_sliver(a: DVec3, b: DVec3, c: DVec3, areas: [f64; 3]) -> Combination<3> {
     let edge = nearest_edge(a, b, c, [true; 3]);
-    if areas.iter().all(|&area| area > 0.0) {
-        edge.nearer(Combination::weighted([a, b, c], areas))
-    } else {
-        edge
-    }
+    let inside = Combination::interior([a, b, c], areas);
+    inside.map_or(edge, |inside| edge.nearer(inside))
 }
 
 /// A triangle's normal, of twice its area's length, and whether the triangle is a sliver.
@@ -170,11 +179,10 @@ fn widest_corner(ab: DVec3, bc: DVec3, ca: DVec3) -> (DVec3, bool) {
 #[inline]
 fn tetrahedron<T: Triangle>(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Combination<4> {
     let (inner, trusted) = sub_volumes(a, b, c, d);
-    if !inner.iter().all(|&volume| volume > 0.0) {
+    let Some(inside) = Combination::interior([a, b, c, d], inner) else {
         let chosen = inner.map(|volume| !(trusted && volume > 0.0));
         return nearest_face::<T>(a, b, c, d, chosen);
-    }
-    let inside = Combination::weighted([a, b, c, d], inner);
+    };
     let within = |y: DVec3| inside.distance() <= INSIDE * INSIDE * y.length_squared();
     if within(a) || within(b) || within(c) || within(d) {
         return inside;

@@ -77,8 +77,11 @@ fn extend<const N: usize, const S: usize>(
 #[inline]
 fn in_subset<const N: usize>(delta: &[f64; N], y: &[DVec3; N], s: usize) -> Option<Combination<N>> {
     let interior = (0..N).all(|i| s >> i & 1 == 0 || delta[i] > 0.0);
-    let finite = delta.iter().sum::<f64>().is_finite();
-    (interior && finite).then(|| Combination::weighted(*y, *delta))
+    if interior {
+        Combination::weighted(*y, *delta)
+    } else {
+        None
+    }
 }
 
 /// Whether the distance is proved to within `TRUST`: ‖v‖ − min v·y_i/‖v‖ bounds its error.
@@ -101,8 +104,8 @@ fn backup<const N: usize, const S: usize>(
     y: &[DVec3; N],
 ) -> Combination<N> {
     let mut best = Combination::vertex(y[0], 0);
-    for s in 1..S {
-        match in_subset(&delta[s], y, s) {
+    for (s, delta) in delta.iter().enumerate().skip(1) {
+        match in_subset(delta, y, s) {
             Some(found) if s < 0b1111 => best = best.nearer(found),
             Some(found) if proves_inside(found.distance(), best.distance()) => best = found,
             _ => {}

@@ -26,14 +26,13 @@ impl Triangle for SignedVolumes {
         let origin = n * (a.dot(n) / n.length_squared());
         let [p, q, r] = flatten(n, [a - origin, b - origin, c - origin]);
         let areas = [q.perp_dot(r), r.perp_dot(p), p.perp_dot(q)];
-        let inner = areas.map(|area| area > 0.0);
         if sliver {
-            nearest_in_sliver(a, b, c, areas)
-        } else if inner == [true; 3] {
-            Combination::weighted([a, b, c], areas)
-        } else {
-            nearest_edge(a, b, c, inner.map(|inner| !inner))
+            return nearest_in_sliver(a, b, c, areas);
         }
+        Combination::interior([a, b, c], areas).unwrap_or_else(|| {
+            let inner = areas.map(|area| area > 0.0);
+            nearest_edge(a, b, c, inner.map(|inner| !inner))
+        })
     }
 }
 

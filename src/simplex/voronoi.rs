@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::faces::{self, Combination, Triangle, nearest_in_sliver, normal};
+use super::faces::{self, Combination, Triangle, nearest_edge, nearest_in_sliver, normal, segment};
 use super::{DistanceSubalgorithm, Nearest};
 
 /// Case analysis of the Voronoi regions (C. Ericson, *Real-Time Collision Detection*, 2004, ch. 5).
@@ -42,18 +42,16 @@ impl Triangle for Voronoi {
             return nearest_in_sliver(a, b, c, [at_a, at_b, at_c]);
         }
         if at_c <= 0.0 && ab_a >= 0.0 && ab_b >= 0.0 {
-            return Combination::weighted([a, b], [ab_b, ab_a]).among(|[p, q]| [p, q, 0.0]);
+            return segment(a, b).among(|[p, q]| [p, q, 0.0]);
         }
         if at_a <= 0.0 && bc_b >= 0.0 && bc_c >= 0.0 {
-            return Combination::weighted([b, c], [bc_c, bc_b]).among(|[p, q]| [0.0, p, q]);
+            return segment(b, c).among(|[p, q]| [0.0, p, q]);
         }
         if at_b <= 0.0 && ca_c >= 0.0 && ca_a >= 0.0 {
-            return Combination::weighted([c, a], [ca_a, ca_c]).among(|[p, q]| [q, 0.0, p]);
+            return segment(c, a).among(|[p, q]| [q, 0.0, p]);
         }
-        if at_a > 0.0 && at_b > 0.0 && at_c > 0.0 {
-            return Combination::weighted([a, b, c], [at_a, at_b, at_c]);
-        }
-        // Rounding left a gap between the regions.
-        nearest_in_sliver(a, b, c, [at_a, at_b, at_c])
+        // If rounding left a gap between the regions, the origin projects next to an edge.
+        Combination::interior([a, b, c], [at_a, at_b, at_c])
+            .unwrap_or_else(|| nearest_edge(a, b, c, [true; 3]))
     }
 }
