@@ -1,13 +1,16 @@
 //! What the geometric sub-algorithms share: segments, the choice among faces, and the tetrahedron.
-//! Weights are barycentric coordinates in the order of the vertices given.
 
 use glam::DVec3;
 
-use super::{Nearest, combine};
+use super::Nearest;
 
-/// Below this sine of a triangle's widest corner its normal has lost half of its digits: the nearest
-/// point is then chosen among all faces by distance, rather than by the signs of areas. Half of
-/// the digits balances the loss of trusting the normal against the loss of ignoring the interior.
+/// Above this sine of a corner, the product of its edges is as good a normal as that of any other.
+const WIDE_SINE: f64 = 1e-2;
+
+/// Below this sine of a triangle's widest corner its normal has lost half of its digits: the
+/// nearest point is then chosen among all faces by distance, rather than by the signs of areas.
+/// Half of the digits balances the loss of trusting the normal against that of ignoring the
+/// interior.
 const SLIVER_SINE: f64 = 1e-8;
 
 /// Below this ratio of a tetrahedron's volume to the product of three edges at a corner, the outer
@@ -18,80 +21,147 @@ const FLAT_RATIO: f64 = 1e-8;
 /// believed without a look at the faces: above the rounding of all but nearly flat tetrahedra.
 const INSIDE: f64 = 1e-12;
 
-/// Answers for 1 to 4 vertices, given the weights of the nearest point of a triangle.
+/// A convex combination of N vertices.
+#[derive(Clone, Copy)]
+pub struct Combination<const N: usize> {
+    pub point: DVec3,
+    pub lambda: [f64; N],
+}
+
+impl<const N: usize> Combination<N> {
+    /// Combines the vertices with the weights, scaled to sum 1, if all are positive: if the point is
+    /// in the interior.
+    #[inline]
+    pub fn interior(y: [DVec3; N], weights: [f64; N]) -> Option<Self> {
+        let positive = weights.iter().all(|&weight| weight > 0.0);
+        if positive {
+            Self::weighted(y, weights)
+        } else {
+            None
+        }
+    }
+
+    /// Combines the vertices with the weights, scaled to sum 1, unless these overflow.
+    #[inline]
+    pub fn weighted(y: [DVec3; N], weights: [f64; N]) -> Option<Self> {
+        let sum = weights.iter().sum::<f64>();
+        let lambda = weights.map(|weight| weight / sum);
+        let point = (0..N).fold(DVec3::ZERO, |point, i| point + y[i] * lambda[i]);
+        sum.is_finite().then_some(Self { point, lambda })
+    }
+
+    /// The combination that is vertex i alone.
+    #[inline]
+    pub fn vertex(point: DVec3, i: usize) -> Self {
+        let mut lambda = [0.0; N];
+        lambda[i] = 1.0;
+        Self { point, lambda }
+    }
+
+    /// The same point as a combination of more vertices.
+    #[inline]
+    pub fn among<const M: usize>(
+        self,
+        lambda: impl FnOnce([f64; N]) -> [f64; M],
+    ) -> Combination<M> {
+        Combination {
+            point: self.point,
+            lambda: lambda(self.lambda),
+        }
+    }
+
+    /// Squared distance from the origin.
+    #[inline]
+    pub fn distance(&self) -> f64 {
+        self.point.length_squared()
+    }
+
+    /// The nearer of two, never one with NaN if `self` has none.
+    #[inline]
+    pub fn nearer(self, other: Self) -> Self {
+        if other.distance() < self.distance() {
+            other
+        } else {
+            self
+        }
+    }
+}
+
+/// Finds the nearest point of a triangle, the step by which the geometric sub-algorithms differ.
+pub trait Triangle {
+    fn triangle(a: DVec3, b: DVec3, c: DVec3) -> Combination<3>;
+}
+
+/// Answers for 1 to 4 vertices.
 #[inline]
-pub fn nearest(points: &[DVec3], triangle: impl Fn([DVec3; 3]) -> [f64; 3]) -> Nearest {
-    let lambda = match *points {
-        [] => [0.0; 4],
-        [_] => [1.0, 0.0, 0.0, 0.0],
-        [a, b] => {
-            let [p, q] = segment([a, b]);
-            [p, q, 0.0, 0.0]
-        }
-        [a, b, c] => {
-            let [p, q, r] = triangle([a, b, c]);
-            [p, q, r, 0.0]
-        }
-        [a, b, c, d, ..] => tetrahedron([a, b, c, d], triangle),
+pub fn nearest<T: Triangle>(points: &[DVec3]) -> Nearest {
+    let found = match *points {
+        [] => return Nearest::default(),
+        [a] => Combination::vertex(a, 0),
+        [a, b] => segment(a, b).among(|[p, q]| [p, q, 0.0, 0.0]),
+        [a, b, c] => T::triangle(a, b, c).among(|[p, q, r]| [p, q, r, 0.0]),
+        [a, b, c, d, ..] => tetrahedron::<T>(a, b, c, d),
     };
-    Nearest::new(points, lambda)
+    found.into()
 }
 
 /// The nearest point of a segment: the origin's projection, clamped.
 #[inline]
-pub fn segment([a, b]: [DVec3; 2]) -> [f64; 2] {
+pub fn segment(a: DVec3, b: DVec3) -> Combination<2> {
     let ab = b - a;
     let (along, length) = (-a.dot(ab), ab.length_squared());
     if along > 0.0 && along < length {
         let t = along / length;
-        [1.0 - t, t]
-    } else if along >= length && length > 0.0 {
-        [0.0, 1.0]
-    } else {
-        [1.0, 0.0]
-    }
-}
-
-/// The nearest point of a triangle's chosen edges; edge i lies opposite to vertex i.
-#[inline]
-pub fn nearest_edge(y: [DVec3; 3], chosen: [bool; 3]) -> [f64; 3] {
-    let mut best = ([1.0, 0.0, 0.0], f64::INFINITY);
-    for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
-        if chosen[i] {
-            let mut lambda = [0.0; 3];
-            [lambda[j], lambda[k]] = segment([y[j], y[k]]);
-            keep_nearer(&mut best, &y, lambda);
+        Combination {
+            point: a + ab * t,
+            lambda: [1.0 - t, t],
         }
+    } else if along > 0.0 && length > 0.0 {
+        Combination::vertex(b, 1)
+    } else {
+        Combination::vertex(a, 0)
     }
-    best.0
 }
 
-/// Replaces the best weights, and their squared distance, by nearer ones. Never by NaN.
+/// The nearest point of a triangle's chosen edges, or vertex a; edge i lies opposite to vertex i.
 #[inline]
-fn keep_nearer<const N: usize>(best: &mut ([f64; N], f64), y: &[DVec3; N], lambda: [f64; N]) {
-    let distance = combine(y, &lambda).length_squared();
-    if distance < best.1 {
-        *best = (lambda, distance);
+pub fn nearest_edge(a: DVec3, b: DVec3, c: DVec3, chosen: [bool; 3]) -> Combination<3> {
+    let mut best = Combination::vertex(a, 0);
+    if chosen[0] {
+        best = best.nearer(segment(b, c).among(|[p, q]| [0.0, p, q]));
     }
+    if chosen[1] {
+        best = best.nearer(segment(c, a).among(|[p, q]| [q, 0.0, p]));
+    }
+    if chosen[2] {
+        best = best.nearer(segment(a, b).among(|[p, q]| [p, q, 0.0]));
+    }
+    best
 }
 
 /// The nearest point of a triangle whose normal is not to be trusted: the best of its edges and of
-/// `inside`, the weights of the projected origin, should these be convex.
-#[inline(never)]
-pub fn nearest_in_sliver(y: [DVec3; 3], inside: [f64; 3]) -> [f64; 3] {
-    let edge = nearest_edge(y, [true; 3]);
-    let mut best = (edge, combine(&y, &edge).length_squared());
-    if inside.iter().all(|&area| area > 0.0) {
-        keep_nearer(&mut best, &y, normalized(inside));
-    }
-    best.0
+/// `areas`, the weights of the projected origin, should these be convex.
+#[cold]
+pub fn nearest_in_sliver(a: DVec3, b: DVec3, c: DVec3, areas: [f64; 3]) -> Combination<3> {
+    let edge = nearest_edge(a, b, c, [true; 3]);
+    let inside = Combination::interior([a, b, c], areas);
+    inside.map_or(edge, |inside| edge.nearer(inside))
 }
 
 /// A triangle's normal, of twice its area's length, and whether the triangle is a sliver.
-/// The product of the two shortest edges carries the least rounding.
 #[inline]
-pub fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, bool) {
-    let (ab, bc, ca) = (b - a, c - b, a - c);
+pub fn normal(ab: DVec3, bc: DVec3, ca: DVec3) -> (DVec3, bool) {
+    let normal = ca.cross(ab);
+    let product = ca.length_squared() * ab.length_squared();
+    if normal.length_squared() > WIDE_SINE * WIDE_SINE * product {
+        return (normal, false);
+    }
+    widest_corner(ab, bc, ca)
+}
+
+/// The normal as the product of the two shortest edges, which carries the least rounding.
+#[cold]
+fn widest_corner(ab: DVec3, bc: DVec3, ca: DVec3) -> (DVec3, bool) {
     let [x, y, z] = [ab, bc, ca].map(DVec3::length_squared);
     let (normal, product) = if x >= y && x >= z {
         (bc.cross(ca), y * z)
@@ -104,38 +174,24 @@ pub fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, bool) {
     (normal, !trusted)
 }
 
-/// Positive weights, scaled to sum 1.
-#[inline]
-pub fn normalized<const N: usize>(weights: [f64; N]) -> [f64; N] {
-    let sum: f64 = weights.iter().sum();
-    weights.map(|weight| weight / sum)
-}
-
 /// The nearest point of a tetrahedron: the origin if inside, else the best of the faces that have
 /// it on their outer side; of all faces, if the tetrahedron is too flat to tell.
 #[inline]
-fn tetrahedron(y: [DVec3; 4], triangle: impl Fn([DVec3; 3]) -> [f64; 3]) -> [f64; 4] {
-    let volumes = sub_volumes(y);
-    let inside = normalized(volumes);
-    if !inside.iter().all(|&l| l > 0.0) {
-        return nearest_face(
-            y,
-            volumes.map(|volume| volume * trusted_volume(y)),
-            triangle,
-        )
-        .0;
-    }
-    let error = combine(&y, &inside).length_squared();
-    if y.iter()
-        .any(|p| error <= INSIDE * INSIDE * p.length_squared())
-    {
+fn tetrahedron<T: Triangle>(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Combination<4> {
+    let (inner, trusted) = sub_volumes(a, b, c, d);
+    let Some(inside) = Combination::interior([a, b, c, d], inner) else {
+        let chosen = inner.map(|volume| !(trusted && volume > 0.0));
+        return nearest_face::<T>(a, b, c, d, chosen);
+    };
+    let within = |y: DVec3| inside.distance() <= INSIDE * INSIDE * y.length_squared();
+    if within(a) || within(b) || within(c) || within(d) {
         return inside;
     }
-    let face = nearest_face(y, [0.0; 4], triangle);
-    if proves_inside(error, face.1) {
+    let face = nearest_face::<T>(a, b, c, d, [true; 4]);
+    if proves_inside(inside.distance(), face.distance()) {
         inside
     } else {
-        face.0
+        face
     }
 }
 
@@ -147,56 +203,42 @@ pub fn proves_inside(squared_distance: f64, squared_face_distance: f64) -> bool 
     4.0 * squared_distance < squared_face_distance
 }
 
-/// The nearest point of the faces that do not have the origin on their inner side, and its squared
-/// distance.
+/// The nearest point of a tetrahedron's chosen faces, or vertex a; face i lies opposite to vertex i.
 #[inline]
-fn nearest_face(
-    y: [DVec3; 4],
-    inner: [f64; 4],
-    triangle: impl Fn([DVec3; 3]) -> [f64; 3],
-) -> ([f64; 4], f64) {
-    let mut best = ([1.0, 0.0, 0.0, 0.0], f64::INFINITY);
-    for (i, [j, k, l]) in [
-        (0, [1, 2, 3]),
-        (1, [0, 2, 3]),
-        (2, [0, 1, 3]),
-        (3, [0, 1, 2]),
-    ] {
-        let skip = inner[i] > 0.0;
-        if !skip {
-            let mut lambda = [0.0; 4];
-            [lambda[j], lambda[k], lambda[l]] = triangle([y[j], y[k], y[l]]);
-            keep_nearer(&mut best, &y, lambda);
-        }
+fn nearest_face<T: Triangle>(
+    a: DVec3,
+    b: DVec3,
+    c: DVec3,
+    d: DVec3,
+    chosen: [bool; 4],
+) -> Combination<4> {
+    let mut best = Combination::vertex(a, 0);
+    if chosen[0] {
+        best = best.nearer(T::triangle(b, c, d).among(|[p, q, r]| [0.0, p, q, r]));
+    }
+    if chosen[1] {
+        best = best.nearer(T::triangle(a, c, d).among(|[p, q, r]| [p, 0.0, q, r]));
+    }
+    if chosen[2] {
+        best = best.nearer(T::triangle(a, b, d).among(|[p, q, r]| [p, q, 0.0, r]));
+    }
+    if chosen[3] {
+        best = best.nearer(T::triangle(a, b, c).among(|[p, q, r]| [p, q, r, 0.0]));
     }
     best
 }
 
-/// Signed volumes of the tetrahedra in which the origin takes the place of one vertex each.
+/// Volumes of the tetrahedra in which the origin takes the place of one vertex each, positive on
+/// the inner side of the opposite face; and whether the signs can be trusted.
 #[inline]
-fn sub_volumes([a, b, c, d]: [DVec3; 4]) -> [f64; 4] {
-    [
-        b.dot((c - b).cross(d - b)),
-        -c.dot((d - c).cross(a - c)),
-        d.dot((a - d).cross(b - d)),
-        -a.dot((b - a).cross(c - a)),
-    ]
-}
-
-/// The signed volume, measured at the first corner at which it is no sliver; zero if there is none.
-#[inline]
-fn trusted_volume([a, b, c, d]: [DVec3; 4]) -> f64 {
-    corner_volume(b - a, c - a, d - a)
-        .or_else(|| corner_volume(a - b, d - b, c - b))
-        .or_else(|| corner_volume(d - c, a - c, b - c))
-        .or_else(|| corner_volume(c - d, b - d, a - d))
-        .unwrap_or(0.0)
-}
-
-/// The signed volume spanned by three edges, unless they are nearly dependent.
-#[inline]
-fn corner_volume(u: DVec3, v: DVec3, w: DVec3) -> Option<f64> {
-    let volume = u.cross(v).dot(w);
-    let product = u.length_squared() * v.length_squared() * w.length_squared();
-    (volume * volume > FLAT_RATIO * FLAT_RATIO * product).then_some(volume)
+fn sub_volumes(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> ([f64; 4], bool) {
+    let (ab, ac, ad) = (b - a, c - a, d - a);
+    let (acd, adb, abc) = (ac.cross(ad), ad.cross(ab), ab.cross(ac));
+    let volume = ab.dot(acd);
+    let product = ab.length_squared() * ac.length_squared() * ad.length_squared();
+    let toward = a * -volume.signum();
+    let (at_b, at_c, at_d) = (toward.dot(acd), toward.dot(adb), toward.dot(abc));
+    let at_a = volume.abs() - (at_b + at_c + at_d);
+    let trusted = volume * volume > FLAT_RATIO * FLAT_RATIO * product;
+    ([at_a, at_b, at_c, at_d], trusted)
 }

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::faces::proves_inside;
-use super::{DistanceSubalgorithm, Nearest, combine};
+use super::faces::{Combination, proves_inside};
+use super::{DistanceSubalgorithm, Nearest};
 
 /// Subsets in increasing order of their bit mask, by Cramer's rule, with the backup procedure
 /// (E. Gilbert, D. Johnson, S. Keerthi, *A fast procedure for computing the distance between
@@ -13,14 +13,14 @@ pub struct Johnson;
 impl DistanceSubalgorithm for Johnson {
     #[inline]
     fn nearest(points: &[DVec3]) -> Nearest {
-        let lambda = match *points {
-            [] => [0.0; 4],
-            [_] => [1.0, 0.0, 0.0, 0.0],
-            [a, b] => solve([a, b]),
-            [a, b, c] => solve([a, b, c]),
-            [a, b, c, d, ..] => solve([a, b, c, d]),
+        let found = match *points {
+            [] => return Nearest::default(),
+            [a] => Combination::vertex(a, 0),
+            [a, b] => solve::<2, 4>([a, b]).among(|[p, q]| [p, q, 0.0, 0.0]),
+            [a, b, c] => solve::<3, 8>([a, b, c]).among(|[p, q, r]| [p, q, r, 0.0]),
+            [a, b, c, d, ..] => solve::<4, 16>([a, b, c, d]),
         };
-        Nearest::new(points, lambda)
+        found.into()
     }
 }
 
@@ -30,25 +30,22 @@ impl DistanceSubalgorithm for Johnson {
 const TRUST: f64 = 1e-10;
 
 /// Δ_i(Y_s) at `[s][i]`, with the subset s as a bit mask.
-type Determinants = [[f64; 4]; 16];
+type Determinants<const N: usize, const S: usize> = [[f64; N]; S];
 
+/// The nearest point; S = 2^N is the number of subsets.
 #[inline]
-fn solve<const N: usize>(y: [DVec3; N]) -> [f64; 4] {
-    let reach = y
-        .iter()
-        .fold(0.0, |r: f64, v| r.max(v.length_squared()))
-        .sqrt();
-    let mut delta: Determinants = [[0.0; 4]; 16];
+fn solve<const N: usize, const S: usize>(y: [DVec3; N]) -> Combination<N> {
+    let mut delta: Determinants<N, S> = [[0.0; N]; S];
     for i in 0..N {
         delta[1 << i][i] = 1.0;
     }
-    for s in 1..1 << N {
+    for s in 1..S {
         let beyond = extend(&mut delta, &y, s);
         if !beyond
-            && let Some(lambda) = weights::<N>(&delta[s], s)
-            && certified(&y, &lambda, reach)
+            && let Some(found) = in_subset(&delta[s], &y, s)
+            && certified(&y, found.point)
         {
-            return lambda;
+            return found;
         }
     }
     backup(&delta, &y)
@@ -57,7 +54,11 @@ fn solve<const N: usize>(y: [DVec3; N]) -> [f64; 4] {
 /// Tabulates Δ_j(Y_s ∪ {y_j}) for every j outside of s; true if any is positive, so that v(aff Y_s)
 /// is not the nearest point.
 #[inline]
-fn extend<const N: usize>(delta: &mut Determinants, y: &[DVec3; N], s: usize) -> bool {
+fn extend<const N: usize, const S: usize>(
+    delta: &mut Determinants<N, S>,
+    y: &[DVec3; N],
+    s: usize,
+) -> bool {
     let k = s.trailing_zeros() as usize;
     let mut beyond = false;
     for j in (0..N).filter(|j| s >> j & 1 == 0) {
@@ -72,18 +73,24 @@ fn extend<const N: usize>(delta: &mut Determinants, y: &[DVec3; N], s: usize) ->
     beyond
 }
 
-/// λ_i = Δ_i / ΣΔ, if v(aff Y_s) lies in the interior of conv Y_s.
+/// v(aff Y_s) with λ_i = Δ_i / ΣΔ, if it lies in the interior of conv Y_s.
 #[inline]
-fn weights<const N: usize>(delta: &[f64; 4], s: usize) -> Option<[f64; 4]> {
+fn in_subset<const N: usize>(delta: &[f64; N], y: &[DVec3; N], s: usize) -> Option<Combination<N>> {
     let interior = (0..N).all(|i| s >> i & 1 == 0 || delta[i] > 0.0);
-    let sum: f64 = delta.iter().sum();
-    (interior && sum.is_finite()).then(|| delta.map(|d| d / sum))
+    if interior {
+        Combination::weighted(*y, *delta)
+    } else {
+        None
+    }
 }
 
 /// Whether the distance is proved to within `TRUST`: ‖v‖ − min v·y_i/‖v‖ bounds its error.
 #[inline]
-fn certified<const N: usize>(y: &[DVec3; N], lambda: &[f64; 4], reach: f64) -> bool {
-    let v = combine(y, lambda);
+fn certified<const N: usize>(y: &[DVec3; N], v: DVec3) -> bool {
+    let reach = y
+        .iter()
+        .fold(0.0, |r: f64, p| r.max(p.length_squared()))
+        .sqrt();
     let (norm, allowed) = (v.length(), TRUST * reach);
     norm <= allowed || y.iter().all(|&p| v.dot(v - p) <= allowed * norm)
 }
@@ -92,20 +99,17 @@ fn certified<const N: usize>(y: &[DVec3; N], lambda: &[f64; 4], reach: f64) -> b
 /// simplex even if its determinants are rounding, so that the nearest is never a bad choice. (The
 /// tetrahedron comes last, and must prove that it has the origin inside.)
 #[cold]
-fn backup<const N: usize>(delta: &Determinants, y: &[DVec3; N]) -> [f64; 4] {
-    let mut best = ([1.0, 0.0, 0.0, 0.0], f64::INFINITY);
-    for s in 1..1 << N {
-        if let Some(lambda) = weights::<N>(&delta[s], s) {
-            let distance = combine(y, &lambda).length_squared();
-            let nearer = if s == 0b1111 {
-                proves_inside(distance, best.1)
-            } else {
-                distance < best.1
-            };
-            if nearer {
-                best = (lambda, distance);
-            }
+fn backup<const N: usize, const S: usize>(
+    delta: &Determinants<N, S>,
+    y: &[DVec3; N],
+) -> Combination<N> {
+    let mut best = Combination::vertex(y[0], 0);
+    for (s, delta) in delta.iter().enumerate().skip(1) {
+        match in_subset(delta, y, s) {
+            Some(found) if s < 0b1111 => best = best.nearer(found),
+            Some(found) if proves_inside(found.distance(), best.distance()) => best = found,
+            _ => {}
         }
     }
-    best.0
+    best
 }

@@ -10,6 +10,7 @@ mod johnson;
 mod signed_volumes;
 mod voronoi;
 
+use faces::Combination;
 use glam::DVec3;
 
 pub use johnson::Johnson;
@@ -17,7 +18,7 @@ pub use signed_volumes::SignedVolumes;
 pub use voronoi::Voronoi;
 
 /// The point of a simplex nearest to the origin, and the smallest face that holds it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Nearest {
     /// v(conv Y): the nearest point; exactly zero when the origin is inside of a tetrahedron.
     pub point: DVec3,
@@ -27,16 +28,11 @@ pub struct Nearest {
     pub lambda: [f64; 4],
 }
 
-impl Nearest {
-    /// The convex combination of `points` with the weights `lambda`.
+impl From<Combination<4>> for Nearest {
     #[inline]
-    fn new(points: &[DVec3], lambda: [f64; 4]) -> Self {
+    fn from(Combination { point, lambda }: Combination<4>) -> Self {
         let face = (0..4).fold(0, |face, i| face | (u8::from(lambda[i] > 0.0) << i));
-        let point = if face == 0b1111 {
-            DVec3::ZERO
-        } else {
-            combine(points, &lambda)
-        };
+        let point = if face == 0b1111 { DVec3::ZERO } else { point };
         Self {
             point,
             face,
@@ -51,13 +47,4 @@ pub trait DistanceSubalgorithm {
     /// `points`: 1 to 4 vertices, in any order and position, degenerate or not. (No vertices have
     /// no nearest point: the answer is then the origin with an empty face.)
     fn nearest(points: &[DVec3]) -> Nearest;
-}
-
-/// Σ λ_i y_i.
-#[inline]
-fn combine(points: &[DVec3], lambda: &[f64]) -> DVec3 {
-    points
-        .iter()
-        .zip(lambda)
-        .fold(DVec3::ZERO, |sum, (&y, &l)| sum + y * l)
 }

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::faces::{self, nearest_edge, nearest_in_sliver, normal, normalized};
+use super::faces::{self, Combination, Triangle, nearest_edge, nearest_in_sliver, normal};
 use super::{DistanceSubalgorithm, Nearest};
 
 /// Signs of sub-volumes, recursing on the faces the origin lies beyond (M. Montanari, N. Petrinic,
@@ -13,27 +13,26 @@ pub struct SignedVolumes;
 impl DistanceSubalgorithm for SignedVolumes {
     #[inline]
     fn nearest(points: &[DVec3]) -> Nearest {
-        faces::nearest(points, triangle)
+        faces::nearest::<Self>(points)
     }
 }
 
-/// The nearest point of a triangle. Areas are measured in the coordinate plane on which the
-/// triangle is largest: no products of more than two lengths, hence little cancellation.
-#[inline]
-fn triangle(y: [DVec3; 3]) -> [f64; 3] {
-    let (n, sliver) = normal(y);
-    let origin = n * (y[0].dot(n) / n.length_squared());
-    let [a, b, c] = flatten(n, y.map(|vertex| vertex - origin));
-    let areas = [b.perp_dot(c), c.perp_dot(a), a.perp_dot(b)];
-    if sliver {
-        return nearest_in_sliver(y, areas);
-    }
-    let beyond =
-        areas.map(|area| !matches!(area.partial_cmp(&0.0), Some(std::cmp::Ordering::Greater)));
-    if beyond == [false; 3] {
-        normalized(areas)
-    } else {
-        nearest_edge(y, beyond)
+impl Triangle for SignedVolumes {
+    /// Areas are measured in the coordinate plane on which the triangle is largest: products of two
+    /// lengths, rather than four, lose little to cancellation.
+    #[inline]
+    fn triangle(a: DVec3, b: DVec3, c: DVec3) -> Combination<3> {
+        let (n, sliver) = normal(b - a, c - b, a - c);
+        let origin = n * (a.dot(n) / n.length_squared());
+        let [p, q, r] = flatten(n, [a - origin, b - origin, c - origin]);
+        let areas = [q.perp_dot(r), r.perp_dot(p), p.perp_dot(q)];
+        if sliver {
+            return nearest_in_sliver(a, b, c, areas);
+        }
+        Combination::interior([a, b, c], areas).unwrap_or_else(|| {
+            let inner = areas.map(|area| area > 0.0);
+            nearest_edge(a, b, c, inner.map(|inner| !inner))
+        })
     }
 }
 
