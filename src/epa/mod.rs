@@ -95,22 +95,22 @@ fn finish(mut answer: Penetration, lower_bound: f64) -> Penetration {
     answer
 }
 
-/// The witness points over a face: where the origin projects to, or the nearest point to it.
+/// The witness points over a face: where the origin projects to, or the point of the triangle
+/// nearest to that. (A facet larger than the triangle may hold the foot outside of it.)
 fn witness(face: [CsoVertex; 3], normal: DVec3, depth: f64) -> Penetration {
     // Measured from the foot of the normal, so that the depth does not swamp the position.
     let foot = normal * depth;
     let nearest = Voronoi::nearest(&face.map(|v| v.w - foot));
-    let on_1: DVec3 = face
-        .iter()
-        .zip(nearest.lambda)
-        .map(|(vertex, weight)| vertex.on_1 * weight)
-        .sum();
+    let combine = |on: fn(&CsoVertex) -> DVec3| -> DVec3 {
+        let weighted = face.iter().zip(nearest.lambda);
+        weighted.map(|(vertex, weight)| on(vertex) * weight).sum()
+    };
     Penetration {
         depth,
         lower_bound: depth,
         normal,
-        on_1,
-        on_2: on_1 - foot,
+        on_1: combine(|vertex| vertex.on_1),
+        on_2: combine(CsoVertex::on_2),
         face,
     }
 }

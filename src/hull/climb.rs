@@ -30,41 +30,49 @@ pub(super) fn support(
     cost: &mut Cost,
 ) -> (DVec3, VertexId) {
     cost.supports += 1;
+    let start_value = dir.dot(points[start as usize].as_dvec3());
     let mut best = start;
-    let mut position = points[best as usize].as_dvec3();
-    let mut value = dir.dot(position);
-    let start_value = value;
-    let mut worst_neighbor = f64::INFINITY;
-    loop {
-        let mut next = best;
-        for &w in graph.neighbors(best) {
-            let candidate = points[w as usize].as_dvec3();
-            let d = dir.dot(candidate);
-            worst_neighbor = worst_neighbor.min(d);
-            if d > value {
-                value = d;
-                position = candidate;
-                next = w.into();
-            }
-        }
-        if next == best {
-            break;
-        }
-        best = next;
+    let mut value = start_value;
+    let worst_neighbor;
+    (value, best, worst_neighbor) = best_neighbor(points, graph.neighbors(best), dir, value, best);
+    let mut last = start;
+    while best != last {
+        last = best;
         cost.climb_moves += 1;
+        (value, best, _) = best_neighbor(points, graph.neighbors(best), dir, value, best);
     }
-    // `worst_neighbor` saw all neighbours of the start: if one of them lies off the plateau,
-    // or the climb left it upwards, the end is a maximum.
-    let rise = value - start_value;
-    let drop = start_value - worst_neighbor;
-    let scale = PLATEAU * radius;
-    if rise.max(drop) * rise.max(drop) <= scale * scale * dir.length_squared() {
-        if let Some(exit) = leave_plateau(points, graph, scale * dir.length(), dir, best) {
-            cost.climb_moves += 1;
-            return support(points, graph, radius, dir, exit, cost);
-        }
+    // If a neighbour of the start lies off the plateau, or the climb left it upwards, the end
+    // is a maximum.
+    let off = (value - start_value).max(start_value - worst_neighbor);
+    let tie = PLATEAU * radius;
+    if off * off <= tie * tie * dir.length_squared()
+        && let Some(exit) = leave_plateau(points, graph, tie * dir.length(), dir, best)
+    {
+        cost.climb_moves += 1;
+        return support(points, graph, radius, dir, exit, cost);
     }
-    (position, best)
+    (points[best as usize].as_dvec3(), best)
+}
+
+/// The best of a vertex, `best` with `value`, and its neighbours; and the least value of these.
+/// Selections instead of branches: which neighbour is better is not predictable.
+#[inline(always)]
+fn best_neighbor(
+    points: &[Vec3],
+    neighbors: &[u16],
+    dir: DVec3,
+    mut value: f64,
+    mut best: VertexId,
+) -> (f64, VertexId, f64) {
+    let mut worst = f64::INFINITY;
+    for &w in neighbors {
+        let d = dir.dot(points[w as usize].as_dvec3());
+        let better = d > value;
+        best = if better { w.into() } else { best };
+        value = if better { d } else { value };
+        worst = if d < worst { d } else { worst };
+    }
+    (value, best, worst)
 }
 
 /// A vertex above the plateau around `start`, or `None` if the plateau is the maximum.

@@ -15,6 +15,7 @@
 use glam::DVec3;
 
 use super::Proximity;
+use crate::epa::Penetration;
 use crate::gjk::SeparatingAxis;
 use crate::pose::RelativePose;
 use crate::stats::Cost;
@@ -261,9 +262,7 @@ impl Test {
             offset + along_1 - along_2,
             offset - along_2,
         ];
-        // Where the plane through both edges meets the line from the origin along the normal.
-        let s = -offset.dot(along_2.cross(cross)) / area_squared;
-        let t = -offset.dot(along_1.cross(cross)) / area_squared;
+        let [s, t] = crossing(offset, along_1, along_2);
         let supports = -normal.dot(offset) - signed_distance <= self.tolerance;
         let proved = supports
             && if signed_distance >= 0.0 {
@@ -296,6 +295,53 @@ impl Test {
         seeds.push(center_seed(center, cso.shape_1.center(), extreme.ids));
         Verdict::Unproved(seeds)
     }
+}
+
+/// Where the lines `a + s along_1` and `b + t along_2`, `offset` being `a - b`, are nearest.
+fn crossing(offset: DVec3, along_1: DVec3, along_2: DVec3) -> [f64; 2] {
+    let cross = along_1.cross(along_2);
+    let area_squared = cross.length_squared();
+    [along_2, along_1].map(|along| -offset.dot(along.cross(cross)) / area_squared)
+}
+
+/// The witness points of a penetration depth, from its features where these determine them: a
+/// facet may be larger than the triangle that was found of it.
+pub(super) fn witnesses<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    features: [Feature; 2],
+    depth: &Penetration,
+) -> [DVec3; 2] {
+    let through = depth.normal * depth.depth;
+    match features {
+        [Feature::Vertex(v), _] => {
+            let on_1 = cso.shape_1.vertex(v);
+            [on_1, on_1 - through]
+        }
+        [_, Feature::Vertex(v)] => {
+            let on_2 = cso.pose.point_to_1(cso.shape_2.vertex(v));
+            [on_2 + through, on_2]
+        }
+        [Feature::Edge(e1), Feature::Edge(e2)] => {
+            edge_witnesses(cso, e1, e2).unwrap_or([depth.on_1, depth.on_2])
+        }
+        _ => [depth.on_1, depth.on_2],
+    }
+}
+
+/// The nearest points of two edges that cross.
+fn edge_witnesses<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    e1: u32,
+    e2: u32,
+) -> Option<[DVec3; 2]> {
+    let [a0, a1] = cso.shape_1.edge(e1)?.map(|v| cso.shape_1.vertex(v));
+    let [b0, b1] = cso
+        .shape_2
+        .edge(e2)?
+        .map(|v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
+    let [s, t] = crossing(a0 - b0, a1 - a0, b1 - b0);
+    let on_edges = (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t);
+    on_edges.then(|| [a0.lerp(a1, s), b0.lerp(b1, t)])
 }
 
 /// The centre of the Minkowski difference: inside, so that it never is a corner of the answer.

@@ -168,12 +168,14 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     }
 
     fn overlapping(&self, depth: &Penetration) -> Answer {
+        let features = feature::of_simplex(self.cso, &depth.face, depth.normal);
+        let [on_1, on_2] = feature::witnesses(self.cso, features, depth);
         Answer::Near(Proximity {
             signed_distance: -depth.depth,
             normal: depth.normal,
-            on_1: depth.on_1,
-            on_2: depth.on_2,
-            features: feature::of_simplex(self.cso, &depth.face, depth.normal),
+            on_1,
+            on_2,
+            features,
         })
     }
 }
