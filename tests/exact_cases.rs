@@ -12,7 +12,7 @@ mod common;
 
 use common::cases::{Case, Hull, cases, hulls, trajectories};
 use common::memory::Memory;
-use common::oracle::{Solid, separation_along};
+use common::oracle::{Solid, regret};
 use common::report::{Finding, Report};
 use glam::DVec3;
 use isa_gjk::IsaGjkDispatcher;
@@ -95,13 +95,13 @@ impl<'a> Pair<'a> {
             return finding;
         };
         self.judge_distance(&mut finding, claim.signed_distance);
-        let regret = self.case.signed_distance
-            - separation_along(
-                self.solid_a,
-                self.solid_b,
-                &self.case.pose(),
-                claim.normal.normalize(),
-            );
+        let regret = regret(
+            self.solid_a,
+            self.solid_b,
+            &self.case.pose(),
+            claim.normal,
+            self.case.signed_distance,
+        );
         finding.at_most(
             "regret/scale",
             regret / self.case.scale,
