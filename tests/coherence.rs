@@ -257,7 +257,7 @@ fn published_trajectories() {
 fn smooth_motions() {
     let mut report = Report::new("smooth random motions");
     let mut dice = Dice::new(1);
-    for motion in 0..40 {
+    for motion in 0..100 {
         let (a, b, reach) = random_pair(&mut dice);
         let poses = dice.passage(60, reach);
         let scenes = poses.into_iter().enumerate().map(|(frame, pose)| {
@@ -273,7 +273,7 @@ fn smooth_motions() {
 fn teleports() {
     let mut report = Report::new("teleports");
     let mut dice = Dice::new(2);
-    for motion in 0..40 {
+    for motion in 0..100 {
         let (a, b, reach) = random_pair(&mut dice);
         let mut poses = dice.passage(40, reach);
         for frame in (7..40).step_by(4) {
