@@ -10,9 +10,9 @@
 
 mod common;
 
-use common::cases::{Case, Hull, cases, hulls, trajectories};
+use common::cases::{Case, Hull, built_by_parry, cases, hulls, trajectories};
 use common::memory::Memory;
-use common::oracle::{Solid, separation_along};
+use common::oracle::{Solid, regret};
 use common::report::{Finding, Report};
 use glam::DVec3;
 use isa_gjk::IsaGjkDispatcher;
@@ -43,7 +43,16 @@ struct Claim {
     normal: DVec3,
 }
 
+/// How the shapes of a case are made; not every way suits every case.
+type Variant<'a> = fn(&'a Case) -> Option<Pair<'a>>;
+
 impl<'a> Pair<'a> {
+    const VARIANTS: [(&'static str, Variant<'a>); 3] = [
+        ("", |case| Some(Self::new(case))),
+        (", box as cuboid", Self::with_cuboid),
+        (", by convex_hull", Self::built_by_parry),
+    ];
+
     fn new(case: &'a Case) -> Self {
         let hull = |name: &str| -> &'static Hull { &hulls()[name] };
         let (a, b) = (hull(&case.shape_a), hull(&case.shape_b));
@@ -67,6 +76,15 @@ impl<'a> Pair<'a> {
         } else {
             return None;
         }
+        Some(pair)
+    }
+
+    /// The same pair as `convex_hull` builds it from the points, where it loses none.
+    fn built_by_parry(case: &'a Case) -> Option<Self> {
+        let built = built_by_parry();
+        let mut pair = Self::new(case);
+        pair.shape_a = built.get(&case.shape_a)?.clone();
+        pair.shape_b = built.get(&case.shape_b)?.clone();
         Some(pair)
     }
 
@@ -95,13 +113,13 @@ impl<'a> Pair<'a> {
             return finding;
         };
         self.judge_distance(&mut finding, claim.signed_distance);
-        let regret = self.case.signed_distance
-            - separation_along(
-                self.solid_a,
-                self.solid_b,
-                &self.case.pose(),
-                claim.normal.normalize(),
-            );
+        let regret = regret(
+            self.solid_a,
+            self.solid_b,
+            &self.case.pose(),
+            claim.normal,
+            self.case.signed_distance,
+        );
         finding.at_most(
             "regret/scale",
             regret / self.case.scale,
@@ -279,9 +297,10 @@ impl<'a> Pair<'a> {
 fn check_regime(regime: &str) {
     let mut report = Report::new(regime);
     for case in cases(regime) {
-        Pair::new(&case).check_cold(&mut report, "");
-        if let Some(pair) = Pair::with_cuboid(&case) {
-            pair.check_cold(&mut report, ", box as cuboid");
+        for (variant, pair) in Pair::VARIANTS {
+            if let Some(pair) = pair(&case) {
+                pair.check_cold(&mut report, variant);
+            }
         }
     }
     report.conclude();
@@ -333,12 +352,7 @@ fn trajectories_cold() {
 }
 
 /// One memory kept from frame to frame, as rapier keeps it.
-fn check_warm<'a>(
-    report: &mut Report,
-    route: &str,
-    trajectory: &'a [Case],
-    pair: impl Fn(&'a Case) -> Option<Pair<'a>>,
-) {
+fn check_warm<'a>(report: &mut Report, route: &str, trajectory: &'a [Case], pair: Variant<'a>) {
     let dispatcher = IsaGjkDispatcher::default();
     let mut memory = Memory::default();
     for pair in trajectory.iter().filter_map(pair) {
@@ -360,15 +374,10 @@ fn check_warm<'a>(
 fn trajectories_warm() {
     let mut report = Report::new("trajectories, warm");
     for trajectory in trajectories() {
-        check_warm(&mut report, "manifold, warm", &trajectory, |case| {
-            Some(Pair::new(case))
-        });
-        check_warm(
-            &mut report,
-            "manifold, warm, box as cuboid",
-            &trajectory,
-            Pair::with_cuboid,
-        );
+        for (variant, pair) in Pair::VARIANTS {
+            let route = format!("manifold, warm{variant}");
+            check_warm(&mut report, &route, &trajectory, pair);
+        }
     }
     report.conclude();
 }

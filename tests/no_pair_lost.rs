@@ -103,7 +103,8 @@ fn box_hull() -> SharedShape {
         let side = |bit: u32| if i & (1 << bit) == 0 { -0.5 } else { 0.5 };
         Vector::new(side(0), side(1), side(2))
     };
-    hull_of(&(0..8).map(corner).collect::<Vec<_>>()).shape
+    let corners: Vec<Vector> = (0..8).map(corner).collect();
+    hull_of(&corners).expect("a box is convex").shape
 }
 
 fn trimesh() -> SharedShape {

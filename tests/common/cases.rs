@@ -89,6 +89,24 @@ pub fn hulls() -> &'static HashMap<String, Hull> {
     })
 }
 
+/// The published points as `convex_hull` makes a shape of them, with triangles and a numbering
+/// of its own; only where it keeps every point.
+pub fn built_by_parry() -> &'static HashMap<String, SharedShape> {
+    static BUILT: OnceLock<HashMap<String, SharedShape>> = OnceLock::new();
+    BUILT.get_or_init(|| {
+        let build = |hull: &Hull| {
+            let points: Vec<Vector> = hull.solid.points.iter().map(|p| p.as_vec3()).collect();
+            let shape = SharedShape::convex_hull(&points)?;
+            let kept = shape.as_convex_polyhedron()?.points();
+            points.iter().all(|p| kept.contains(p)).then_some(shape)
+        };
+        hulls()
+            .iter()
+            .filter_map(|(name, hull)| Some((name.clone(), build(hull)?)))
+            .collect()
+    })
+}
+
 /// All cases of one regime.
 pub fn cases(regime: &str) -> Vec<Case> {
     let path = data("cases").join(format!("{regime}.jsonl"));

@@ -40,19 +40,26 @@ impl Dice {
     }
 
     /// A hull of about `size` in diameter with exactly `vertices` corners: round, stretched, or
-    /// a drum with two flat many-cornered faces.
+    /// a drum with two flat many-cornered faces. Rolls again where parry's convex hull is not
+    /// quite convex.
     pub fn hull(&mut self, vertices: usize, size: f64) -> Hull {
-        let radii = 0.5 * size * DVec3::new(self.range(0.4, 1.0), self.range(0.4, 1.0), 1.0);
-        let flat = vertices.is_multiple_of(2) && self.range(0.0, 1.0) < 0.3;
-        let points: Vec<Vector> = if flat {
-            self.drum(vertices / 2, radii)
-        } else {
-            (0..vertices).map(|_| radii * self.direction()).collect()
+        loop {
+            let points = self.corners(vertices, size);
+            if let Some(hull) = hull_of(&points) {
+                return hull;
+            }
         }
-        .into_iter()
-        .map(|p| p.as_vec3())
-        .collect();
-        hull_of(&points)
+    }
+
+    fn corners(&mut self, count: usize, size: f64) -> Vec<Vector> {
+        let radii = 0.5 * size * DVec3::new(self.range(0.4, 1.0), self.range(0.4, 1.0), 1.0);
+        let is_drum = count >= 6 && count.is_multiple_of(2) && self.range(0.0, 1.0) < 0.3;
+        let points: Vec<DVec3> = if is_drum {
+            self.drum(count / 2, radii)
+        } else {
+            (0..count).map(|_| radii * self.direction()).collect()
+        };
+        points.into_iter().map(|p| p.as_vec3()).collect()
     }
 
     /// Two regular polygons above each other, the upper one smaller.
@@ -96,16 +103,11 @@ impl Dice {
     }
 }
 
-/// The hull of points that are all corners of it.
-pub fn hull_of(points: &[Vector]) -> Hull {
-    let (corners, faces) = try_convex_hull(points).expect("the points span a solid");
-    assert_eq!(corners.len(), points.len(), "all points are corners");
+/// The hull of points that are all corners of it, if it comes out convex.
+pub fn hull_of(points: &[Vector]) -> Option<Hull> {
+    let (corners, faces) = try_convex_hull(points).ok()?;
     let solid = Solid::new(corners.iter().map(|p| p.as_dvec3()).collect(), &faces);
-    let bulge = solid.concavity() / solid.diameter();
-    assert!(
-        bulge < 1.0e-6,
-        "the generated hull is not convex: {bulge:e}"
-    );
-    let shape = SharedShape::convex_mesh(corners, &faces).expect("a closed surface");
-    Hull { solid, shape }
+    let is_convex = solid.concavity() < 1.0e-7 * solid.diameter();
+    let shape = SharedShape::convex_mesh(corners, &faces)?;
+    (is_convex && solid.points.len() == points.len()).then_some(Hull { solid, shape })
 }

@@ -8,7 +8,7 @@ use parry3d::shape::SharedShape;
 
 pub type Manifold = ContactManifold<(), ()>;
 
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Memory {
     pub manifolds: Vec<Manifold>,
     pub workspace: Option<ContactManifoldsWorkspace>,

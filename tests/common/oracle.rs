@@ -64,6 +64,11 @@ impl Solid {
         }
     }
 
+    /// Its triangles, counter-clockwise from outside.
+    pub fn faces(&self) -> &[[u32; 3]] {
+        &self.faces
+    }
+
     /// The same faces over points that moved.
     pub fn with_points(&self, points: impl Iterator<Item = DVec3>) -> Self {
         Self::new(points.collect(), &self.faces)
@@ -162,9 +167,21 @@ impl Edge {
 }
 
 /// `s(n) = min_b n·b − max_a n·a`: the signed distance is its maximum over all unit `n`.
-pub fn separation_along(a: &Solid, b: &Solid, pose: &ExactPose, normal: DVec3) -> f64 {
+fn separation_along(a: &Solid, b: &Solid, pose: &ExactPose, normal: DVec3) -> f64 {
     let in_b = pose.rotation.inverse() * normal;
     normal.dot(pose.translation) - b.support(-in_b) - a.support(normal)
+}
+
+/// How much separation a better normal would have shown. There is no better than the `exact`
+/// signed distance: a normal that beats it would prove the oracle wrong.
+pub fn regret(a: &Solid, b: &Solid, pose: &ExactPose, normal: DVec3, exact: f64) -> f64 {
+    let shown = separation_along(a, b, pose, normal.normalize());
+    let rounding = 1.0e-8 * (a.diameter() + b.diameter() + pose.translation.length());
+    assert!(
+        shown.is_nan() || shown <= exact + rounding,
+        "{normal} separates by {shown:e}, more than the exact {exact:e}"
+    );
+    exact - shown
 }
 
 /// The exact signed distance, up to rounding in f64.
