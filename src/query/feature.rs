@@ -39,7 +39,11 @@ pub(super) enum Verdict {
     Apart(SeparatingAxis),
     /// The facet's signed distance is that of the shapes.
     Certified(Proximity),
-    /// Not proved. Points of the Minkowski difference around the facet, to go on from.
+    /// The facet's plane separates the shapes, but not at the facet: the nearest point seems to
+    /// lie beyond the side with these end points.
+    Beyond([CsoVertex; 2]),
+    /// The shapes overlap, perhaps less elsewhere. Points of the Minkowski difference around the
+    /// facet, to go on from.
     Unproved(Seeds),
     /// These features do not span a facet.
     NoPlane,
@@ -57,7 +61,7 @@ impl Seeds {
         &self.points[..self.len]
     }
 
-    fn push(&mut self, point: CsoVertex) {
+    pub fn push(&mut self, point: CsoVertex) {
         if self.len < self.points.len() {
             self.points[self.len] = point;
             self.len += 1;
@@ -119,18 +123,16 @@ fn vertex_of(shape: &impl Polytope, feature: Feature) -> VertexId {
 }
 
 /// The features that the vertices of a simplex span. `normal` in frame 1, from shape 1 to 2.
-pub(super) fn of_simplex<A: Polytope, B: Polytope>(
+pub(super) fn of_simplex<'v, A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
-    simplex: &[CsoVertex],
+    simplex: impl Iterator<Item = &'v CsoVertex> + Clone,
     normal: DVec3,
 ) -> [Feature; 2] {
+    let ids_2 = simplex.clone().map(|v| v.ids[1]);
+    let outward_2 = -cso.pose.direction_to_2(normal);
     [
-        spanned(cso.shape_1, simplex.iter().map(|v| v.ids[0]), normal),
-        spanned(
-            cso.shape_2,
-            simplex.iter().map(|v| v.ids[1]),
-            -cso.pose.direction_to_2(normal),
-        ),
+        spanned(cso.shape_1, simplex.map(|v| v.ids[0]), normal),
+        spanned(cso.shape_2, ids_2, outward_2),
     ]
 }
 
@@ -188,33 +190,37 @@ impl Test {
         }
         let count = p.face_len(face);
         let corner = |i: usize| p.vertex(p.face_vertex(face, i)) - on_q;
-        let apex = p.center() - q_pose.point_to_1(q.center());
-        let proved = if signed_distance >= 0.0 {
-            projects_inside(count, corner, normal, self.tolerance)
-        } else {
-            let depth = -signed_distance - self.tolerance;
-            pyramid_holds_ball(count, corner, apex, depth)
+        let vertex = |i: usize| {
+            let id = p.face_vertex(face, i);
+            let on_1 = p.vertex(id);
+            CsoVertex {
+                w: on_1 - on_q,
+                on_1,
+                ids: [id, q_id],
+            }
         };
-        if proved {
-            return Verdict::Certified(Proximity {
-                signed_distance,
-                normal,
-                on_1: on_q - normal * signed_distance,
-                on_2: on_q,
-                features: [Feature::Face(face), Feature::Vertex(q_id)],
-            });
+        let certified = Proximity {
+            signed_distance,
+            normal,
+            on_1: on_q - normal * signed_distance,
+            on_2: on_q,
+            features: [Feature::Face(face), Feature::Vertex(q_id)],
+        };
+        if signed_distance >= 0.0 {
+            return match side_beyond(count, corner, normal, self.tolerance) {
+                None => Verdict::Certified(certified),
+                Some(side) => Verdict::Beyond([vertex(side), vertex((side + 1) % count)]),
+            };
+        }
+        let apex = p.center() - q_pose.point_to_1(q.center());
+        if pyramid_holds_ball(count, corner, apex, -signed_distance - self.tolerance) {
+            return Verdict::Certified(certified);
         }
         let mut seeds = Seeds::default();
         // Corners spread around the face, whatever their number.
         let spread = count.min(4);
         for i in 0..spread {
-            let id = p.face_vertex(face, i * count / spread);
-            let on_p = p.vertex(id);
-            seeds.push(CsoVertex {
-                w: on_p - on_q,
-                on_1: on_p,
-                ids: [id, q_id],
-            });
+            seeds.push(vertex(i * count / spread));
         }
         seeds.push(center_seed(apex, p.center(), seeds.points[0].ids));
         Verdict::Unproved(seeds)
@@ -256,43 +262,63 @@ impl Test {
                 ids: extreme.ids,
             });
         }
-        let corners = [
-            offset,
-            offset + along_1,
-            offset + along_1 - along_2,
-            offset - along_2,
-        ];
-        let [s, t] = crossing(offset, along_1, along_2);
-        let supports = -normal.dot(offset) - signed_distance <= self.tolerance;
-        let proved = supports
-            && if signed_distance >= 0.0 {
-                (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t)
-            } else {
-                let depth = -signed_distance - self.tolerance;
-                // `along_1` then `-along_2` turn clockwise about `cross`.
-                let corner = |i: usize| corners[if outward < 0.0 { i } else { 3 - i }];
-                pyramid_holds_ball(4, corner, center, depth)
-            };
-        if proved {
+        if -normal.dot(offset) - signed_distance > self.tolerance {
+            // Other vertices are extreme by now: the edges are none that meet.
+            return self.unproved(signed_distance, &[extreme], cso);
+        }
+        // `along_1` then `-along_2` turn clockwise about `cross`.
+        let turn = if outward < 0.0 {
+            [0, 1, 2, 3]
+        } else {
+            [3, 2, 1, 0]
+        };
+        let vertices = turn.map(|i| {
+            let (a, b) = ([0, 1, 1, 0][i], [0, 0, 1, 1][i]);
+            let on_1 = [a0, a1][a];
+            CsoVertex {
+                w: on_1 - [b0, b1][b],
+                on_1,
+                ids: [ends_1[a], ends_2[b]],
+            }
+        });
+        let corner = |i: usize| vertices[i].w;
+        let certified = || {
+            let [s, _] = crossing(offset, along_1, along_2);
             let on_1 = a0 + along_1 * s;
-            return Verdict::Certified(Proximity {
+            Verdict::Certified(Proximity {
                 signed_distance,
                 normal,
                 on_1,
                 on_2: on_1 + normal * signed_distance,
                 features,
-            });
+            })
+        };
+        if signed_distance >= 0.0 {
+            return match side_beyond(4, corner, normal, self.tolerance) {
+                None => certified(),
+                Some(side) => Verdict::Beyond([vertices[side], vertices[(side + 1) % 4]]),
+            };
+        }
+        if pyramid_holds_ball(4, corner, center, -signed_distance - self.tolerance) {
+            return certified();
+        }
+        self.unproved(signed_distance, &vertices, cso)
+    }
+
+    /// Goes on from these vertices of the Minkowski difference, whose plane has this distance.
+    fn unproved<A: Polytope, B: Polytope>(
+        &self,
+        signed_distance: f64,
+        vertices: &[CsoVertex],
+        cso: &Cso<'_, A, B>,
+    ) -> Verdict {
+        let ids = vertices[0].ids;
+        if signed_distance >= 0.0 {
+            return Verdict::Beyond([vertices[0], *vertices.last().unwrap_or(&vertices[0])]);
         }
         let mut seeds = Seeds::default();
-        for (i, &w) in corners.iter().enumerate() {
-            let (a, b) = ([0, 1, 1, 0][i], [0, 0, 1, 1][i]);
-            seeds.push(CsoVertex {
-                w,
-                on_1: [a0, a1][a],
-                ids: [ends_1[a], ends_2[b]],
-            });
-        }
-        seeds.push(center_seed(center, cso.shape_1.center(), extreme.ids));
+        vertices.iter().for_each(|vertex| seeds.push(*vertex));
+        seeds.push(center_seed(cso.center(), cso.shape_1.center(), ids));
         Verdict::Unproved(seeds)
     }
 }
@@ -349,22 +375,31 @@ fn center_seed(w: DVec3, on_1: DVec3, ids: [VertexId; 2]) -> CsoVertex {
     CsoVertex { w, on_1, ids }
 }
 
-/// Whether the origin projects along `normal` into a polygon that turns counter-clockwise about
-/// it, up to `tolerance`.
-fn projects_inside(
+/// The side of a polygon, counter-clockwise about `normal`, beyond which the origin projects
+/// farthest, as the index of its first corner; `None` if it projects inside, up to `tolerance`.
+fn side_beyond(
     count: usize,
     corner: impl Fn(usize) -> DVec3,
     normal: DVec3,
     tolerance: f64,
-) -> bool {
+) -> Option<usize> {
+    let mut beyond = None;
+    let mut farthest = tolerance * tolerance;
     let mut from = corner(count - 1);
-    (0..count).all(|i| {
+    for i in 0..count {
         let to = corner(i);
         let inward = normal.cross(to - from);
         let height = -inward.dot(from);
         from = to;
-        height >= 0.0 || height * height <= tolerance * tolerance * inward.length_squared()
-    })
+        if height < 0.0 {
+            let squared = height * height / inward.length_squared();
+            if squared > farthest {
+                farthest = squared;
+                beyond = Some((i + count - 1) % count);
+            }
+        }
+    }
+    beyond
 }
 
 /// Whether the origin is at least `depth` inside of all side planes of the pyramid over a
@@ -402,17 +437,22 @@ impl Verdict {
                 on_2: pose.point_to_1(p.on_1),
                 features: [p.features[1], p.features[0]],
             }),
+            Self::Beyond(edge) => Self::Beyond(edge.map(|vertex| mirrored(&vertex, pose))),
             Self::Unproved(mut seeds) => {
                 for seed in &mut seeds.points[..seeds.len] {
-                    *seed = CsoVertex {
-                        w: -pose.direction_to_1(seed.w),
-                        on_1: pose.point_to_1(seed.on_2()),
-                        ids: [seed.ids[1], seed.ids[0]],
-                    };
+                    *seed = mirrored(seed, pose);
                 }
                 Self::Unproved(seeds)
             }
             Self::NoPlane => Self::NoPlane,
         }
+    }
+}
+
+fn mirrored(vertex: &CsoVertex, pose: &RelativePose) -> CsoVertex {
+    CsoVertex {
+        w: -pose.direction_to_1(vertex.w),
+        on_1: pose.point_to_1(vertex.on_2()),
+        ids: [vertex.ids[1], vertex.ids[0]],
     }
 }

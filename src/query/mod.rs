@@ -21,7 +21,10 @@ use crate::simplex::Voronoi;
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 use crate::tolerance::DEPTH_GAP;
-use feature::Verdict;
+use feature::{Seeds, Verdict};
+
+/// The stages of a query that goes on from a previous frame.
+const WARM: [Stage; 2] = [Stage::WarmGjk, Stage::WarmEpa];
 
 /// What is remembered of a pair from one frame to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +82,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                 let axis = self.center_line();
                 let start = self.cso.start(axis);
                 let vertex = self.cso.support(axis, start, self.cost);
-                self.from_vertex(vertex, [Stage::ColdGjk, Stage::ColdEpa])
+                self.from_vertices(&[vertex], [Stage::ColdGjk, Stage::ColdEpa])
             }
             Memory::Axis(axis, ids) => {
                 match gjk::test_axis(
@@ -90,7 +93,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                     self.cost,
                 ) {
                     Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-                    Err(vertex) => self.from_vertex(vertex, [Stage::WarmGjk, Stage::WarmEpa]),
+                    Err(vertex) => self.from_vertices(&[vertex], WARM),
                 }
             }
             Memory::Contact(normal, features) => self.from_contact(normal, features),
@@ -109,14 +112,19 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         ]
     }
 
-    /// GJK from a vertex of the Minkowski difference, and EPA if the shapes overlap.
-    fn from_vertex(&mut self, vertex: CsoVertex, stages: [Stage; 2]) -> Option<(Answer, Stage)> {
-        match gjk::distance::<Voronoi, _, _>(self.cso, vertex, self.max_distance, self.cost) {
+    /// GJK from vertices of the Minkowski difference, and EPA if the shapes overlap.
+    fn from_vertices(
+        &mut self,
+        start: &[CsoVertex],
+        stages: [Stage; 2],
+    ) -> Option<(Answer, Stage)> {
+        match gjk::distance::<Voronoi, _, _>(self.cso, start, self.max_distance, self.cost) {
             Outcome::Apart(apart) => Some((Answer::Apart(apart), stages[0])),
             Outcome::Near(closest) => Some((self.near(&closest), stages[0])),
             Outcome::Overlap(simplex) => {
-                let depth =
-                    epa::penetration(self.cso, simplex.vertices(), self.scratch, self.cost)?;
+                let mut seeds = Seeds::default();
+                simplex.vertices().for_each(|vertex| seeds.push(*vertex));
+                let depth = epa::penetration(self.cso, seeds.as_slice(), self.scratch, self.cost)?;
                 Some((self.overlapping(&depth), stages[1]))
             }
         }
@@ -127,11 +135,12 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         match feature::certify(self.cso, features, self.max_distance, tolerance, self.cost) {
             Verdict::Apart(apart) => Some((Answer::Apart(apart), Stage::Axis)),
             Verdict::Certified(proximity) => Some((Answer::Near(proximity), Stage::Feature)),
+            Verdict::Beyond(edge) => self.from_vertices(&edge, WARM),
             Verdict::Unproved(seeds) => self.from_seeds(seeds.as_slice()),
             Verdict::NoPlane => {
                 let start = feature::vertices(self.cso, features);
                 let vertex = self.cso.support(normal, start, self.cost);
-                self.from_vertex(vertex, [Stage::WarmGjk, Stage::WarmEpa])
+                self.from_vertices(&[vertex], WARM)
             }
         }
     }
@@ -152,7 +161,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
         if separation > 0.0 {
             let vertex = self.cso.support(depth.normal, ids, self.cost);
-            return self.from_vertex(vertex, [Stage::WarmGjk, Stage::WarmEpa]);
+            return self.from_vertices(&[vertex], WARM);
         }
         Some((self.overlapping(&depth), Stage::WarmEpa))
     }
@@ -168,7 +177,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     }
 
     fn overlapping(&self, depth: &Penetration) -> Answer {
-        let features = feature::of_simplex(self.cso, &depth.face, depth.normal);
+        let features = feature::of_simplex(self.cso, depth.face.iter(), depth.normal);
         let [on_1, on_2] = feature::witnesses(self.cso, features, depth);
         Answer::Near(Proximity {
             signed_distance: -depth.depth,
