@@ -43,8 +43,8 @@ pub(super) enum Verdict {
     /// lie beyond the side with these end points.
     Beyond([CsoVertex; 2]),
     /// The shapes overlap, perhaps less elsewhere. Points of the Minkowski difference around the
-    /// facet, to go on from.
-    Unproved(Seeds),
+    /// facet, to go on from, and the answer if the facet turns out to be the nearest.
+    Unproved(Seeds, Option<Proximity>),
     /// These features do not span a facet.
     NoPlane,
 }
@@ -223,7 +223,8 @@ impl Test {
             seeds.push(vertex(i * count / spread));
         }
         seeds.push(center_seed(apex, p.center(), seeds.points[0].ids));
-        Verdict::Unproved(seeds)
+        let inside = side_beyond(count, corner, normal, self.tolerance).is_none();
+        Verdict::Unproved(seeds, inside.then_some(certified))
     }
 
     /// Two edges that cross; everything in frame 1.
@@ -262,10 +263,6 @@ impl Test {
                 ids: extreme.ids,
             });
         }
-        if -normal.dot(offset) - signed_distance > self.tolerance {
-            // Other vertices are extreme by now: the edges are none that meet.
-            return self.unproved(signed_distance, &[extreme], cso);
-        }
         // `along_1` then `-along_2` turn clockwise about `cross`.
         let turn = if outward < 0.0 {
             [0, 1, 2, 3]
@@ -282,44 +279,41 @@ impl Test {
             }
         });
         let corner = |i: usize| vertices[i].w;
-        let certified = || {
+        let supports = -normal.dot(offset) - signed_distance <= self.tolerance;
+        let meeting = || {
             let [s, _] = crossing(offset, along_1, along_2);
             let on_1 = a0 + along_1 * s;
-            Verdict::Certified(Proximity {
+            Proximity {
                 signed_distance,
                 normal,
                 on_1,
                 on_2: on_1 + normal * signed_distance,
                 features,
-            })
+            }
         };
         if signed_distance >= 0.0 {
-            return match side_beyond(4, corner, normal, self.tolerance) {
-                None => certified(),
+            let side = side_beyond(4, corner, normal, self.tolerance);
+            return match side {
+                None if supports => Verdict::Certified(meeting()),
+                // Where other vertices are extreme by now, they are the place to go on from.
+                None => Verdict::Beyond([extreme, extreme]),
                 Some(side) => Verdict::Beyond([vertices[side], vertices[(side + 1) % 4]]),
             };
         }
-        if pyramid_holds_ball(4, corner, center, -signed_distance - self.tolerance) {
-            return certified();
+        let inside = side_beyond(4, corner, normal, self.tolerance).is_none();
+        let candidate = (supports && inside).then(meeting);
+        let depth = -signed_distance - self.tolerance;
+        match candidate {
+            Some(proximity) if pyramid_holds_ball(4, corner, center, depth) => {
+                Verdict::Certified(proximity)
+            }
+            _ => {
+                let mut seeds = Seeds::default();
+                vertices.iter().for_each(|vertex| seeds.push(*vertex));
+                seeds.push(center_seed(center, cso.shape_1.center(), extreme.ids));
+                Verdict::Unproved(seeds, candidate)
+            }
         }
-        self.unproved(signed_distance, &vertices, cso)
-    }
-
-    /// Goes on from these vertices of the Minkowski difference, whose plane has this distance.
-    fn unproved<A: Polytope, B: Polytope>(
-        &self,
-        signed_distance: f64,
-        vertices: &[CsoVertex],
-        cso: &Cso<'_, A, B>,
-    ) -> Verdict {
-        let ids = vertices[0].ids;
-        if signed_distance >= 0.0 {
-            return Verdict::Beyond([vertices[0], *vertices.last().unwrap_or(&vertices[0])]);
-        }
-        let mut seeds = Seeds::default();
-        vertices.iter().for_each(|vertex| seeds.push(*vertex));
-        seeds.push(center_seed(cso.center(), cso.shape_1.center(), ids));
-        Verdict::Unproved(seeds)
     }
 }
 
@@ -430,19 +424,13 @@ impl Verdict {
                 separation: apart.separation,
                 ids: [apart.ids[1], apart.ids[0]],
             }),
-            Self::Certified(p) => Self::Certified(Proximity {
-                signed_distance: p.signed_distance,
-                normal: -pose.direction_to_1(p.normal),
-                on_1: pose.point_to_1(p.on_2),
-                on_2: pose.point_to_1(p.on_1),
-                features: [p.features[1], p.features[0]],
-            }),
+            Self::Certified(proximity) => Self::Certified(mirrored_proximity(&proximity, pose)),
             Self::Beyond(edge) => Self::Beyond(edge.map(|vertex| mirrored(&vertex, pose))),
-            Self::Unproved(mut seeds) => {
+            Self::Unproved(mut seeds, candidate) => {
                 for seed in &mut seeds.points[..seeds.len] {
                     *seed = mirrored(seed, pose);
                 }
-                Self::Unproved(seeds)
+                Self::Unproved(seeds, candidate.map(|c| mirrored_proximity(&c, pose)))
             }
             Self::NoPlane => Self::NoPlane,
         }
@@ -454,5 +442,15 @@ fn mirrored(vertex: &CsoVertex, pose: &RelativePose) -> CsoVertex {
         w: -pose.direction_to_1(vertex.w),
         on_1: pose.point_to_1(vertex.on_2()),
         ids: [vertex.ids[1], vertex.ids[0]],
+    }
+}
+
+fn mirrored_proximity(p: &Proximity, pose: &RelativePose) -> Proximity {
+    Proximity {
+        signed_distance: p.signed_distance,
+        normal: -pose.direction_to_1(p.normal),
+        on_1: pose.point_to_1(p.on_2),
+        on_2: pose.point_to_1(p.on_1),
+        features: [p.features[1], p.features[0]],
     }
 }

@@ -15,7 +15,7 @@ pub use feature::{Feature, vertices};
 
 use glam::DVec3;
 
-use crate::epa::{self, EpaScratch, Penetration};
+use crate::epa::{self, Depth, EpaScratch, Penetration};
 use crate::gjk::{self, Closest, Outcome, SeparatingAxis};
 use crate::simplex::Voronoi;
 use crate::stats::{Cost, Stage};
@@ -124,10 +124,16 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             Outcome::Overlap(simplex) => {
                 let mut seeds = Seeds::default();
                 simplex.vertices().for_each(|vertex| seeds.push(*vertex));
-                let depth = epa::penetration(self.cso, seeds.as_slice(), self.scratch, self.cost)?;
-                Some((self.overlapping(&depth), stages[1]))
+                match self.depth(seeds.as_slice(), f64::INFINITY)? {
+                    Depth::Found(depth) => Some((self.overlapping(&depth), stages[1])),
+                    Depth::Known => None,
+                }
             }
         }
+    }
+
+    fn depth(&mut self, seeds: &[CsoVertex], known: f64) -> Option<Depth> {
+        epa::penetration(self.cso, seeds, known, self.scratch, self.cost)
     }
 
     fn from_contact(&mut self, normal: DVec3, features: [Feature; 2]) -> Option<(Answer, Stage)> {
@@ -136,7 +142,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             Verdict::Apart(apart) => Some((Answer::Apart(apart), Stage::Axis)),
             Verdict::Certified(proximity) => Some((Answer::Near(proximity), Stage::Feature)),
             Verdict::Beyond(edge) => self.from_vertices(&edge, WARM),
-            Verdict::Unproved(seeds) => self.from_seeds(seeds.as_slice()),
+            Verdict::Unproved(seeds, candidate) => self.from_seeds(seeds.as_slice(), candidate),
             Verdict::NoPlane => {
                 let start = feature::vertices(self.cso, features);
                 let vertex = self.cso.support(normal, start, self.cost);
@@ -145,10 +151,18 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
     }
 
-    /// The depth, grown from points near the previous contact; where it finds the shapes
-    /// separate, GJK finds how far.
-    fn from_seeds(&mut self, seeds: &[CsoVertex]) -> Option<(Answer, Stage)> {
-        let depth = epa::penetration(self.cso, seeds, self.scratch, self.cost)?;
+    /// The depth, grown from points near the previous contact, if it is not that of the
+    /// `candidate`; where it finds the shapes separate, GJK finds how far.
+    fn from_seeds(
+        &mut self,
+        seeds: &[CsoVertex],
+        candidate: Option<Proximity>,
+    ) -> Option<(Answer, Stage)> {
+        let known = candidate.map_or(f64::INFINITY, |c| -c.signed_distance);
+        let depth = match (self.depth(seeds, known)?, candidate) {
+            (Depth::Found(depth), _) => depth,
+            (Depth::Known, candidate) => return Some((Answer::Near(candidate?), Stage::WarmEpa)),
+        };
         let separation = -depth.depth;
         let ids = depth.face[0].ids;
         if separation > self.max_distance {
