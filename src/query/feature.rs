@@ -40,13 +40,34 @@ pub(super) enum Verdict {
     /// The facet's signed distance is that of the shapes.
     Certified(Proximity),
     /// The facet's plane separates the shapes, but not at the facet: the nearest point seems to
-    /// lie beyond the side with these end points.
-    Beyond([CsoVertex; 2]),
+    /// lie beyond this side.
+    Beyond(Side),
     /// The shapes overlap, perhaps less elsewhere. Points of the Minkowski difference around the
     /// facet, to go on from, and the answer if the facet turns out to be the nearest.
     Unproved(Seeds, Option<Proximity>),
     /// These features do not span a facet.
     NoPlane,
+}
+
+/// A side of a facet. In frame 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Side {
+    /// Its end points.
+    pub ends: [CsoVertex; 2],
+    /// The facet's normal, from shape 1 to shape 2.
+    pub normal: DVec3,
+    /// The unit direction in the facet's plane out of the facet.
+    pub outward: DVec3,
+}
+
+impl Side {
+    fn new(from: CsoVertex, to: CsoVertex, normal: DVec3) -> Self {
+        Self {
+            ends: [from, to],
+            normal,
+            outward: (to.w - from.w).cross(normal).normalize_or_zero(),
+        }
+    }
 }
 
 /// A few points of the Minkowski difference.
@@ -209,7 +230,7 @@ impl Test {
         if signed_distance >= 0.0 {
             return match side_beyond(count, corner, normal, self.tolerance) {
                 None => Verdict::Certified(certified),
-                Some(side) => Verdict::Beyond([vertex(side), vertex((side + 1) % count)]),
+                Some(i) => Verdict::Beyond(Side::new(vertex(i), vertex((i + 1) % count), normal)),
             };
         }
         let apex = p.center() - q_pose.point_to_1(q.center());
@@ -296,8 +317,8 @@ impl Test {
             return match side {
                 None if supports => Verdict::Certified(meeting()),
                 // Where other vertices are extreme by now, they are the place to go on from.
-                None => Verdict::Beyond([extreme, extreme]),
-                Some(side) => Verdict::Beyond([vertices[side], vertices[(side + 1) % 4]]),
+                None => Verdict::Beyond(Side::new(extreme, extreme, normal)),
+                Some(i) => Verdict::Beyond(Side::new(vertices[i], vertices[(i + 1) % 4], normal)),
             };
         }
         let inside = side_beyond(4, corner, normal, self.tolerance).is_none();
@@ -425,7 +446,11 @@ impl Verdict {
                 ids: [apart.ids[1], apart.ids[0]],
             }),
             Self::Certified(proximity) => Self::Certified(mirrored_proximity(&proximity, pose)),
-            Self::Beyond(edge) => Self::Beyond(edge.map(|vertex| mirrored(&vertex, pose))),
+            Self::Beyond(side) => Self::Beyond(Side {
+                ends: side.ends.map(|vertex| mirrored(&vertex, pose)),
+                normal: -pose.direction_to_1(side.normal),
+                outward: -pose.direction_to_1(side.outward),
+            }),
             Self::Unproved(mut seeds, candidate) => {
                 for seed in &mut seeds.points[..seeds.len] {
                     *seed = mirrored(seed, pose);

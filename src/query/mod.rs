@@ -21,7 +21,11 @@ use crate::simplex::Voronoi;
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 use crate::tolerance::DEPTH_GAP;
-use feature::{Seeds, Verdict};
+use feature::{Seeds, Side, Verdict};
+
+/// Tangent of the angle by which a direction is turned towards where the next facet is to be
+/// expected. Hulls of a hundred vertices have dihedral angles around it; any value is correct.
+const TILT: f64 = 0.2;
 
 /// The stages of a query that goes on from a previous frame.
 const WARM: [Stage; 2] = [Stage::WarmGjk, Stage::WarmEpa];
@@ -93,7 +97,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                     self.cost,
                 ) {
                     Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-                    Err(vertex) => self.from_vertices(&[vertex], WARM),
+                    Err(vertex) => self.from_failed_axis(axis, vertex),
                 }
             }
             Memory::Contact(normal, features) => self.from_contact(normal, features),
@@ -110,6 +114,28 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             self.cso.shape_1.valid_start(ids[0]),
             self.cso.shape_2.valid_start(ids[1]),
         ]
+    }
+
+    /// The axis separates no more, but mostly because the shapes turned a little: tilted away from
+    /// where `vertex` comes too near, it often does.
+    fn from_failed_axis(&mut self, axis: DVec3, vertex: CsoVertex) -> Option<(Answer, Stage)> {
+        let sideways = vertex.w - axis * axis.dot(vertex.w);
+        let tilted = axis - sideways.normalize_or_zero() * TILT;
+        let tilted = tilted.normalize();
+        match gjk::test_axis(self.cso, tilted, vertex.ids, self.max_distance, self.cost) {
+            Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
+            Err(second) => self.from_vertices(&[vertex, second], WARM),
+        }
+    }
+
+    /// GJK from the facet on the other side of a side of the previous one. From the side alone
+    /// its first direction would be sideways, far from where the shapes are near.
+    fn from_side(&mut self, side: &Side) -> Option<(Answer, Stage)> {
+        let [from, to] = side.ends;
+        let beyond = self
+            .cso
+            .support(side.normal + side.outward * TILT, from.ids, self.cost);
+        self.from_vertices(&[from, to, beyond], WARM)
     }
 
     /// GJK from vertices of the Minkowski difference, and EPA if the shapes overlap.
@@ -141,7 +167,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         match feature::certify(self.cso, features, self.max_distance, tolerance, self.cost) {
             Verdict::Apart(apart) => Some((Answer::Apart(apart), Stage::Axis)),
             Verdict::Certified(proximity) => Some((Answer::Near(proximity), Stage::Feature)),
-            Verdict::Beyond(edge) => self.from_vertices(&edge, WARM),
+            Verdict::Beyond(side) => self.from_side(&side),
             Verdict::Unproved(seeds, candidate) => self.from_seeds(seeds.as_slice(), candidate),
             Verdict::NoPlane => {
                 let start = feature::vertices(self.cso, features);
@@ -174,8 +200,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             return Some((Answer::Apart(axis), Stage::WarmEpa));
         }
         if separation > 0.0 {
-            let vertex = self.cso.support(depth.normal, ids, self.cost);
-            return self.from_vertices(&[vertex], WARM);
+            return self.from_vertices(&depth.face, WARM);
         }
         Some((self.overlapping(&depth), Stage::WarmEpa))
     }
