@@ -135,15 +135,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         let tilted = (side.normal + side.outward * TILT).normalize();
         match gjk::test_axis(self.cso, tilted, from.ids, self.max_distance, self.cost) {
             Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-            Err(beyond) => {
-                let overlap = side.normal.dot(from.w).min(tilted.dot(beyond.w)) >= 0.0;
-                if overlap {
-                    let center = feature::center_seed(self.cso, from.ids);
-                    self.from_seeds(&[from, to, beyond, center], None)
-                } else {
-                    self.from_vertices(&[from, to, beyond], WARM)
-                }
-            }
+            Err(beyond) => self.from_vertices(&[from, to, beyond], WARM),
         }
     }
 
