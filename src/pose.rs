@@ -13,21 +13,22 @@ pub struct RelativePose {
 impl RelativePose {
     /// From an f32 pose of shape 2 in frame 1; its quaternion is normalised here, in f64.
     ///
-    /// `None` when the pose is not finite or its quaternion has no direction.
+    /// Of a pose that is not [valid](Self::is_valid) something that is not finite.
     #[inline(always)]
-    pub fn new(pos12: &Pose) -> Option<Self> {
+    pub fn new(pos12: &Pose) -> Self {
         let q = pos12.rotation;
         let q = DQuat::from_xyzw(q.x.into(), q.y.into(), q.z.into(), q.w.into());
-        let length = q.length_squared();
-        let translation = pos12.translation.as_dvec3();
-        if !(length.is_finite() && length > f64::MIN_POSITIVE && translation.is_finite()) {
-            return None;
+        Self {
+            rotation: DMat3::from_quat(q * q.length_squared().sqrt().recip()),
+            translation: pos12.translation.as_dvec3(),
         }
-        let rotation = DMat3::from_quat(q * length.sqrt().recip());
-        Some(Self {
-            rotation,
-            translation,
-        })
+    }
+
+    /// Whether a pose is finite and its quaternion has a direction.
+    #[inline]
+    pub fn is_valid(pos12: &Pose) -> bool {
+        let length = pos12.rotation.length_squared();
+        length.is_finite() && length > f32::MIN_POSITIVE && pos12.translation.is_finite()
     }
 
     /// The pose of shape 1 in frame 2.

@@ -46,7 +46,7 @@ pub(super) fn support(
     let off = (value - start_value).max(start_value - worst_neighbor);
     let tie = PLATEAU * radius;
     if off * off <= tie * tie * dir.length_squared()
-        && let Some(exit) = leave_plateau(points, graph, tie * dir.length(), dir, best)
+        && let Some(exit) = leave_plateau(points, graph, tie, dir, best)
     {
         cost.climb_moves += 1;
         return support(points, graph, radius, dir, exit, cost);
@@ -80,6 +80,7 @@ fn best_neighbor(
 
 /// A vertex above the plateau around `start`, or `None` if the plateau is the maximum.
 #[cold]
+#[inline(never)]
 fn leave_plateau(
     points: &[Vec3],
     graph: &EdgeGraph,
@@ -87,6 +88,7 @@ fn leave_plateau(
     dir: DVec3,
     start: VertexId,
 ) -> Option<VertexId> {
+    let tie = tie * dir.length();
     let level = dir.dot(points[start as usize].as_dvec3());
     let mut seen = vec![false; points.len()];
     let mut stack = vec![start];
