@@ -9,11 +9,11 @@ use std::cmp::Ordering;
 use glam::{DVec2, DVec3};
 use parry3d::shape::ConvexPolyhedron;
 
-use crate::hull::{Hull, HullError};
+use super::{Hull, HullError};
 
 /// The hull of a polyhedron, with its vertex ids; with new ones where its surface is not a
 /// convex triangulation of all of its points.
-pub(super) fn hull_of(polyhedron: &ConvexPolyhedron) -> Result<Hull, HullError> {
+pub(crate) fn hull_of(polyhedron: &ConvexPolyhedron) -> Result<Hull, HullError> {
     let points = polyhedron.points();
     triangles(polyhedron)
         .and_then(|triangles| Hull::from_triangles(points.to_vec(), &triangles).ok())
