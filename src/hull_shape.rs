@@ -55,20 +55,20 @@ use crate::support::{FaceId, Polytope};
 /// use isa_gjk::{HullShape, IsaGjkDispatcher};
 /// use rapier3d::prelude::*;
 ///
-/// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let corners = [Vector::ZERO, Vector::X, Vector::Y, Vector::Z];
 /// let shape = SharedShape::new(HullShape::from_points(&corners)?);
 ///
 /// let mut world = PhysicsWorld::default();
 /// world.narrow_phase = NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default());
-/// world.insert_collider(ColliderBuilder::halfspace(Vec3::Y), None);
-/// let body = RigidBodyBuilder::dynamic().translation(Vec3::new(0.0, 1.0, 0.0));
+/// let ground = SharedShape::halfspace(Vector::Y);
+/// world.insert_collider(ColliderBuilder::new(ground), None);
+/// let body = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 1.0, 0.0));
 /// let (body, _) = world.insert(body, ColliderBuilder::new(shape));
 /// for _ in 0..120 {
 ///     world.step();
 /// }
 /// let height = world.bodies[body].translation().y;
 /// assert!(height.abs() < 0.01, "it rests on the ground");
-/// # use glam::Vec3;
 /// # Ok::<(), isa_gjk::HullError>(())
 /// ```
 #[derive(Clone, Debug)]
@@ -136,14 +136,13 @@ impl HullShape {
 /// use isa_gjk::HullShape;
 /// use rapier3d::prelude::*;
 ///
-/// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z];
+/// let corners = [Vector::ZERO, Vector::X, Vector::Y, Vector::Z];
 /// let mut collider = ColliderBuilder::convex_hull(&corners).unwrap().build();
 /// if let Some(polyhedron) = collider.shape().as_convex_polyhedron() {
 ///     let hull = HullShape::try_from(polyhedron.clone())?;
 ///     collider.set_shape(SharedShape::new(hull));
 /// }
 /// assert!(collider.shape().as_shape::<HullShape>().is_some());
-/// # use glam::Vec3;
 /// # Ok::<(), isa_gjk::HullError>(())
 /// ```
 impl TryFrom<ConvexPolyhedron> for HullShape {
