@@ -14,6 +14,7 @@ impl RelativePose {
     /// From an f32 pose of shape 2 in frame 1; its quaternion is normalised here, in f64.
     ///
     /// `None` when the pose is not finite or its quaternion has no direction.
+    #[inline(always)]
     pub fn new(pos12: &Pose) -> Option<Self> {
         let q = pos12.rotation;
         let q = DQuat::from_xyzw(q.x.into(), q.y.into(), q.z.into(), q.w.into());
