@@ -88,7 +88,13 @@ pub(crate) fn surface(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), Hul
         return Err(HullError::TooFewPoints);
     }
     require_finite(points)?;
-    parry3d::transformation::try_convex_hull(points).map_err(|_| HullError::BuilderFailed)
+    let (vertices, triangles) =
+        parry3d::transformation::try_convex_hull(points).map_err(|_| HullError::BuilderFailed)?;
+    // Of points on a line the builder keeps the ends.
+    if vertices.len() < 4 {
+        return Err(HullError::Flat);
+    }
+    Ok((vertices, triangles))
 }
 
 fn require_finite(points: &[Vec3]) -> Result<(), HullError> {

@@ -20,7 +20,8 @@ pub(crate) fn hull_of(polyhedron: &ConvexPolyhedron) -> Result<Hull, HullError> 
         .map_or_else(|| Hull::from_points(points), Ok)
 }
 
-fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
+/// The triangles of a polyhedron, counter-clockwise from outside; `None` if they cannot be told.
+pub(crate) fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
     let points = polyhedron.points();
     if points.iter().any(|p| !p.is_finite()) {
         return None;

@@ -18,17 +18,29 @@ impl HullShape {
         let hull = self.hull();
         let vertex = self.support_vertex(dir);
         let face = hull.face_at(vertex, dir);
+        let Some(at) = self.place_around(face, vertex) else {
+            return FeatureId::Face(face);
+        };
         if hull.face_normal(face).dot(dir) >= COS_1_DEGREE {
             return FeatureId::Face(face);
         }
+        let len = hull.face_len(face);
         let level = |other: &VertexId| {
             let edge = hull.vertex(*other) - hull.vertex(vertex);
             edge.dot(dir).abs() <= SIN_1_DEGREE * edge.length()
         };
-        hull.neighbors(vertex)
+        [at + 1, at + len - 1]
+            .map(|i| hull.face_vertex(face, i % len))
+            .into_iter()
             .find(level)
             .and_then(|other| hull.edge_id(vertex, other))
             .map_or(FeatureId::Vertex(vertex), FeatureId::Edge)
+    }
+
+    /// Where a vertex stands among the corners of a face; `None` if it lies within the face.
+    fn place_around(&self, face: FaceId, vertex: VertexId) -> Option<usize> {
+        let hull = self.hull();
+        (0..hull.face_len(face)).find(|&i| hull.face_vertex(face, i) == vertex)
     }
 
     /// The outward unit normal of a feature, that of an edge or a vertex between those of its
@@ -47,9 +59,12 @@ impl HullShape {
     /// The mean normal of the faces that have all of `corners`.
     fn mean_normal(&self, corners: &[VertexId]) -> Option<DVec3> {
         let hull = self.hull();
-        let polygon = |face| (0..hull.face_len(face)).map(move |i| hull.face_vertex(face, i));
         (0..hull.face_count() as FaceId)
-            .filter(|&face| corners.iter().all(|&v| polygon(face).any(|w| w == v)))
+            .filter(|&face| {
+                corners
+                    .iter()
+                    .all(|&v| self.place_around(face, v).is_some())
+            })
             .map(|face| hull.face_normal(face))
             .sum::<DVec3>()
             .try_normalize()
@@ -90,7 +105,7 @@ impl PolygonalFeatureMap for HullShape {
         let face = hull.face_at(vertex, dir.as_dvec3());
         let len = hull.face_len(face);
         let corner = |i: usize| hull.face_vertex(face, i % len);
-        let first = (0..len).find(|&i| corner(i) == vertex).unwrap_or(0);
+        let first = self.place_around(face, vertex).unwrap_or(0);
         let mut count = 0;
         for (slot, i) in self.far_corners(face, first).enumerate() {
             let edge = hull.edge_id(corner(i), corner(i + 1));

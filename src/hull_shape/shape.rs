@@ -28,10 +28,9 @@ impl Shape for HullShape {
         Box::new(self.clone())
     }
 
-    /// The hull of the scaled points; `None` if they have no solid hull.
+    /// The scaled hull; `None` if it is flat.
     fn scale_dyn(&self, scale: Vector, _num_subdivisions: u32) -> Option<Box<dyn Shape>> {
-        let scaled: Vec<Vector> = self.hull().points().iter().map(|p| *p * scale).collect();
-        Some(Box::new(Self::from_points(&scaled).ok()?))
+        Some(Box::new(self.scaled(scale)?))
     }
 
     fn mass_properties(&self, density: Real) -> MassProperties {
