@@ -50,17 +50,18 @@ impl Hull {
         }
         require_finite(&points)?;
         require_triangles(&points, triangles)?;
-        let graph = EdgeGraph::new(points.len(), triangles)?;
+        let mut graph = EdgeGraph::new(points.len(), triangles)?;
         let (center, radius) = center_and_radius(&points, triangles)?;
         require_convex(&points, triangles, &graph, radius)?;
 
-        let mut cost = Cost::default();
-        let mut support =
-            |dir, start| climb::support(&points, &graph, radius, dir, start, &mut cost);
-        let faces = Faces::new(&points, triangles, radius, |normal, start| {
-            normal.dot(support(normal, start).0)
+        let support = |graph: &EdgeGraph, dir, start| {
+            climb::support(&points, graph, radius, dir, start, &mut Cost::default())
+        };
+        let (faces, face_of) = Faces::new(&points, triangles, radius, |normal, start| {
+            normal.dot(support(&graph, normal, start).0)
         });
-        let start = StartTable::new(points.len(), |dir, start| support(dir, start).1);
+        graph.set_faces(triangles, &face_of);
+        let start = StartTable::new(points.len(), |dir, start| support(&graph, dir, start).1);
         let hull = Self {
             points: points.into(),
             graph,

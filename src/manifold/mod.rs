@@ -262,12 +262,10 @@ fn facing(shape: &impl Polytope, feature: Feature, outward: DVec3) -> FaceId {
     match feature {
         Feature::Face(face) => face,
         Feature::Vertex(vertex) => shape.face_at(vertex, outward),
-        Feature::Edge(edge) => {
-            let ends = shape.edge(edge).unwrap_or([0, 0]);
-            let [a, b] = ends.map(|v| shape.face_at(v, outward));
-            let aligned = |f| shape.face_normal(f).dot(outward);
-            if aligned(a) >= aligned(b) { a } else { b }
-        }
+        Feature::Edge(edge) => match shape.edge(edge) {
+            Some(ends) => shape.face_beside(ends, outward),
+            None => shape.face_at(0, outward),
+        },
     }
 }
 

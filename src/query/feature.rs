@@ -39,12 +39,11 @@ pub(super) enum Verdict {
     Apart(SeparatingAxis),
     /// The facet's signed distance is that of the shapes.
     Certified(Proximity),
-    /// The facet's plane separates the shapes, but not at the facet: the nearest point seems to
-    /// lie beyond this side.
+    /// The origin projects beyond this side of the facet: another one is nearest by now.
     Beyond(Side),
     /// The shapes overlap, perhaps less elsewhere. Points of the Minkowski difference around the
     /// facet, to go on from, and the answer if the facet turns out to be the nearest.
-    Unproved(Seeds, Option<Proximity>),
+    Unproved(Seeds, Proximity),
     /// These features do not span a facet.
     NoPlane,
 }
@@ -227,14 +226,12 @@ impl Test {
             on_2: on_q,
             features: [Feature::Face(face), Feature::Vertex(q_id)],
         };
-        if signed_distance >= 0.0 {
-            return match side_beyond(count, corner, normal, self.tolerance) {
-                None => Verdict::Certified(certified),
-                Some(i) => Verdict::Beyond(Side::new(vertex(i), vertex((i + 1) % count), normal)),
-            };
+        if let Some(i) = side_beyond(count, corner, normal, self.tolerance) {
+            return Verdict::Beyond(Side::new(vertex(i), vertex((i + 1) % count), normal));
         }
         let apex = p.center() - q_pose.point_to_1(q.center());
-        if pyramid_holds_ball(count, corner, apex, -signed_distance - self.tolerance) {
+        let depth = -signed_distance - self.tolerance;
+        if signed_distance >= 0.0 || pyramid_holds_ball(count, corner, apex, depth) {
             return Verdict::Certified(certified);
         }
         let mut seeds = Seeds::default();
@@ -243,9 +240,12 @@ impl Test {
         for i in 0..spread {
             seeds.push(vertex(i * count / spread));
         }
-        seeds.push(center_seed(apex, p.center(), seeds.points[0].ids));
-        let inside = side_beyond(count, corner, normal, self.tolerance).is_none();
-        Verdict::Unproved(seeds, inside.then_some(certified))
+        seeds.push(CsoVertex {
+            w: apex,
+            on_1: p.center(),
+            ids: seeds.points[0].ids,
+        });
+        Verdict::Unproved(seeds, certified)
     }
 
     /// Two edges that cross; everything in frame 1.
@@ -300,41 +300,30 @@ impl Test {
             }
         });
         let corner = |i: usize| vertices[i].w;
-        let supports = -normal.dot(offset) - signed_distance <= self.tolerance;
-        let meeting = || {
-            let [s, _] = crossing(offset, along_1, along_2);
-            let on_1 = a0 + along_1 * s;
-            Proximity {
-                signed_distance,
-                normal,
-                on_1,
-                on_2: on_1 + normal * signed_distance,
-                features,
-            }
+        if let Some(i) = side_beyond(4, corner, normal, self.tolerance) {
+            return Verdict::Beyond(Side::new(vertices[i], vertices[(i + 1) % 4], normal));
+        }
+        if -normal.dot(offset) - signed_distance > self.tolerance {
+            // Another vertex is extreme by now; beyond some side of the edges, too.
+            return Verdict::Beyond(Side::new(extreme, vertices[0], normal));
+        }
+        let [s, _] = crossing(offset, along_1, along_2);
+        let on_1 = a0 + along_1 * s;
+        let proximity = Proximity {
+            signed_distance,
+            normal,
+            on_1,
+            on_2: on_1 + normal * signed_distance,
+            features,
         };
-        if signed_distance >= 0.0 {
-            let side = side_beyond(4, corner, normal, self.tolerance);
-            return match side {
-                None if supports => Verdict::Certified(meeting()),
-                // Where other vertices are extreme by now, they are the place to go on from.
-                None => Verdict::Beyond(Side::new(extreme, extreme, normal)),
-                Some(i) => Verdict::Beyond(Side::new(vertices[i], vertices[(i + 1) % 4], normal)),
-            };
-        }
-        let inside = side_beyond(4, corner, normal, self.tolerance).is_none();
-        let candidate = (supports && inside).then(meeting);
         let depth = -signed_distance - self.tolerance;
-        match candidate {
-            Some(proximity) if pyramid_holds_ball(4, corner, center, depth) => {
-                Verdict::Certified(proximity)
-            }
-            _ => {
-                let mut seeds = Seeds::default();
-                vertices.iter().for_each(|vertex| seeds.push(*vertex));
-                seeds.push(center_seed(center, cso.shape_1.center(), extreme.ids));
-                Verdict::Unproved(seeds, candidate)
-            }
+        if signed_distance >= 0.0 || pyramid_holds_ball(4, corner, center, depth) {
+            return Verdict::Certified(proximity);
         }
+        let mut seeds = Seeds::default();
+        vertices.iter().for_each(|vertex| seeds.push(*vertex));
+        seeds.push(center_seed(cso, extreme.ids));
+        Verdict::Unproved(seeds, proximity)
     }
 }
 
@@ -386,8 +375,16 @@ fn edge_witnesses<A: Polytope, B: Polytope>(
 }
 
 /// The centre of the Minkowski difference: inside, so that it never is a corner of the answer.
-fn center_seed(w: DVec3, on_1: DVec3, ids: [VertexId; 2]) -> CsoVertex {
-    CsoVertex { w, on_1, ids }
+/// `ids` only tell climbs where to start.
+pub(super) fn center_seed<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    ids: [VertexId; 2],
+) -> CsoVertex {
+    CsoVertex {
+        w: cso.center(),
+        on_1: cso.shape_1.center(),
+        ids,
+    }
 }
 
 /// The side of a polygon, counter-clockwise about `normal`, beyond which the origin projects
@@ -455,7 +452,7 @@ impl Verdict {
                 for seed in &mut seeds.points[..seeds.len] {
                     *seed = mirrored(seed, pose);
                 }
-                Self::Unproved(seeds, candidate.map(|c| mirrored_proximity(&c, pose)))
+                Self::Unproved(seeds, mirrored_proximity(&candidate, pose))
             }
             Self::NoPlane => Self::NoPlane,
         }

@@ -128,14 +128,15 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
     }
 
-    /// GJK from the facet on the other side of a side of the previous one. From the side alone
-    /// its first direction would be sideways, far from where the shapes are near.
+    /// From the facet beyond a side of the previous one. From the side alone GJK's first direction
+    /// would be sideways, far from where the shapes are near.
     fn from_side(&mut self, side: &Side) -> Option<(Answer, Stage)> {
         let [from, to] = side.ends;
-        let beyond = self
-            .cso
-            .support(side.normal + side.outward * TILT, from.ids, self.cost);
-        self.from_vertices(&[from, to, beyond], WARM)
+        let tilted = (side.normal + side.outward * TILT).normalize();
+        match gjk::test_axis(self.cso, tilted, from.ids, self.max_distance, self.cost) {
+            Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
+            Err(beyond) => self.from_vertices(&[from, to, beyond], WARM),
+        }
     }
 
     /// GJK from vertices of the Minkowski difference, and EPA if the shapes overlap.
@@ -168,7 +169,9 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             Verdict::Apart(apart) => Some((Answer::Apart(apart), Stage::Axis)),
             Verdict::Certified(proximity) => Some((Answer::Near(proximity), Stage::Feature)),
             Verdict::Beyond(side) => self.from_side(&side),
-            Verdict::Unproved(seeds, candidate) => self.from_seeds(seeds.as_slice(), candidate),
+            Verdict::Unproved(seeds, candidate) => {
+                self.from_seeds(seeds.as_slice(), Some(candidate))
+            }
             Verdict::NoPlane => {
                 let start = feature::vertices(self.cso, features);
                 let vertex = self.cso.support(normal, start, self.cost);
