@@ -31,12 +31,7 @@ impl Hull {
     /// # Ok::<(), isa_gjk::HullError>(())
     /// ```
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
-        if points.len() < 4 {
-            return Err(HullError::TooFewPoints);
-        }
-        require_finite(points)?;
-        let (vertices, triangles) = parry3d::transformation::try_convex_hull(points)
-            .map_err(|_| HullError::BuilderFailed)?;
+        let (vertices, triangles) = surface(points)?;
         Self::from_triangles(vertices, &triangles)
     }
 
@@ -86,6 +81,21 @@ impl Hull {
         });
         deep_inside.then_some(()).ok_or(HullError::Flat)
     }
+}
+
+/// The vertices and triangles of a point cloud's hull, by parry's hull builder.
+pub(crate) fn surface(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
+    if points.len() < 4 {
+        return Err(HullError::TooFewPoints);
+    }
+    require_finite(points)?;
+    let (vertices, triangles) =
+        parry3d::transformation::try_convex_hull(points).map_err(|_| HullError::BuilderFailed)?;
+    // Of points on a line the builder keeps the ends.
+    if vertices.len() < 4 {
+        return Err(HullError::Flat);
+    }
+    Ok((vertices, triangles))
 }
 
 fn require_finite(points: &[Vec3]) -> Result<(), HullError> {

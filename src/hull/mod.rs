@@ -6,7 +6,9 @@ mod error;
 mod faces;
 mod graph;
 mod start;
+pub(crate) mod topology;
 
+pub(crate) use build::surface;
 pub use error::HullError;
 
 use glam::{DVec3, Vec3};
