@@ -10,6 +10,7 @@ pub mod manifold;
 pub mod pose;
 pub mod primitive;
 pub mod query;
+pub mod ray_cast;
 pub mod simplex;
 pub mod stats;
 pub mod support;

@@ -55,3 +55,8 @@ pub const UNIT_NORMAL: f64 = 1e-3;
 
 /// Edges whose directions span less than this sine squared do not define a contact normal.
 pub const PARALLEL_EDGES: f64 = 1e-8;
+
+/// A ray cast has arrived when it is this near, relative to the pair's size and the way
+/// travelled (whose coordinates carry the rounding). The square root of f64's roundoff: a nearer
+/// nearest point, a sum of coordinates, has no direction that could move the ray on.
+pub const RAY_TOUCHING: f64 = 1e-8;

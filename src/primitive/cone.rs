@@ -1,0 +1,65 @@
+//! A cone about the y axis.
+
+use glam::DVec3;
+
+use super::rim::Rim;
+use crate::stats::Cost;
+use crate::support::{Support, VertexId};
+
+/// A solid cone around its origin, as parry has it: the apex is at `half_height` on the y axis,
+/// the base disc at `-half_height`.
+#[derive(Clone, Copy, Debug)]
+pub struct Cone {
+    half_height: f64,
+    rim: Rim,
+    center: DVec3,
+    radius: f64,
+}
+
+impl Cone {
+    /// A cone from its base at `-half_height` to its apex at `half_height`.
+    pub fn new(half_height: f64, radius: f64) -> Self {
+        // The centre of mass: a quarter of the way up.
+        let above_base = 0.5 * half_height;
+        Self {
+            half_height,
+            rim: Rim { radius },
+            center: DVec3::new(0.0, above_base - half_height, 0.0),
+            radius: radius.hypot(above_base).max(2.0 * half_height - above_base),
+        }
+    }
+}
+
+impl Support for Cone {
+    #[inline]
+    fn support(&self, dir: DVec3, _: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
+        cost.supports += 1;
+        let (on_rim, reach) = self.rim.support(dir, -self.half_height);
+        let point = if 2.0 * self.half_height * dir.y > reach {
+            DVec3::new(0.0, self.half_height, 0.0)
+        } else {
+            on_rim
+        };
+        (point, 0)
+    }
+
+    #[inline]
+    fn start(&self, _: DVec3) -> VertexId {
+        0
+    }
+
+    #[inline]
+    fn valid_start(&self, _: VertexId) -> VertexId {
+        0
+    }
+
+    #[inline]
+    fn center(&self) -> DVec3 {
+        self.center
+    }
+
+    #[inline]
+    fn radius(&self) -> f64 {
+        self.radius
+    }
+}

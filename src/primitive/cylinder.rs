@@ -1,0 +1,53 @@
+//! A cylinder about the y axis.
+
+use glam::DVec3;
+
+use super::rim::Rim;
+use crate::stats::Cost;
+use crate::support::{Support, VertexId};
+
+/// A solid cylinder around its origin, as parry has it: the axis is y.
+#[derive(Clone, Copy, Debug)]
+pub struct Cylinder {
+    half_height: f64,
+    rim: Rim,
+}
+
+impl Cylinder {
+    /// A cylinder from `-half_height` to `half_height`.
+    pub fn new(half_height: f64, radius: f64) -> Self {
+        Self {
+            half_height,
+            rim: Rim { radius },
+        }
+    }
+}
+
+impl Support for Cylinder {
+    #[inline]
+    fn support(&self, dir: DVec3, _: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
+        cost.supports += 1;
+        let height = self.half_height.copysign(dir.y);
+        (self.rim.support(dir, height).0, 0)
+    }
+
+    #[inline]
+    fn start(&self, _: DVec3) -> VertexId {
+        0
+    }
+
+    #[inline]
+    fn valid_start(&self, _: VertexId) -> VertexId {
+        0
+    }
+
+    #[inline]
+    fn center(&self) -> DVec3 {
+        DVec3::ZERO
+    }
+
+    #[inline]
+    fn radius(&self) -> f64 {
+        self.half_height.hypot(self.rim.radius)
+    }
+}

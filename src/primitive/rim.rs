@@ -1,0 +1,26 @@
+//! The round edge of cylinders and cones.
+
+use glam::DVec3;
+
+/// A circle about the y axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rim {
+    pub radius: f64,
+}
+
+impl Rim {
+    /// The extreme point of the disc at some `height`, and how far it reaches along the part of
+    /// `dir` that is square to the axis. Along the axis the whole disc ties: then its centre.
+    #[inline]
+    pub fn support(&self, dir: DVec3, height: f64) -> (DVec3, f64) {
+        // `hypot`, so that directions of any length keep their direction.
+        let length = dir.x.hypot(dir.z);
+        let point = if length > 0.0 {
+            let (x, z) = (dir.x / length, dir.z / length);
+            DVec3::new(self.radius * x, height, self.radius * z)
+        } else {
+            DVec3::new(0.0, height, 0.0)
+        };
+        (point, self.radius * length)
+    }
+}

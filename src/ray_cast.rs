@@ -1,0 +1,217 @@
+//! Linear time of impact by the GJK ray cast (van den Bergen, *Ray casting against general convex
+//! objects with application to continuous collision detection*, 2004).
+//!
+//! Shape 2 moving by `x` touches shape 1 when `x` enters their Minkowski difference: the time of
+//! impact is where the ray `x = time * velocity` hits it. GJK looks for the point of the
+//! difference nearest to `x`, and whenever a support plane separates the two, `x` jumps along the
+//! ray onto this plane. No jump can skip the shape, so the time is a *lower bound* throughout.
+//!
+//! A target distance moves every plane outwards by as much: the ray hits the difference rounded
+//! by a ball. Round shapes are cast as their cores, with the sum of their radii added to it.
+
+use glam::DVec3;
+
+use crate::simplex::DistanceSubalgorithm;
+use crate::stats::Cost;
+use crate::support::{Cso, CsoVertex, Support};
+use crate::tolerance::RAY_TOUCHING;
+
+/// A ray that grazes a smooth shape halves its distance with each iteration, and is done after
+/// forty; the bound only guards against a stall that no other test sees.
+const MAX_ITERATIONS: usize = 256;
+
+/// What a moving shape meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RayCast {
+    /// Nothing within the time asked about (or the input was not finite).
+    Miss,
+    /// It touches.
+    Hit(Impact),
+    /// The shapes overlap, or are within the target distance, from the beginning.
+    Overlap,
+}
+
+/// The first contact of a moving shape; vectors in frame 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impact {
+    /// When: no earlier contact is possible, and now the shapes are within the target distance,
+    /// up to [`RAY_TOUCHING`].
+    pub time: f64,
+    /// Unit direction from shape 1 to shape 2.
+    pub normal: DVec3,
+    /// The touching point of shape 1.
+    pub on_1: DVec3,
+    /// The touching point of shape 2, at the time of impact.
+    pub on_2: DVec3,
+}
+
+/// When shape 2, moving by `velocity` relative to shape 1 (in frame 1) without turning, first
+/// comes within `target_distance` of shape 1. Both that and `max_time` may not be negative; an
+/// infinite time is fine.
+pub fn ray_cast<S: DistanceSubalgorithm, A: Support, B: Support>(
+    cso: &Cso<'_, A, B>,
+    velocity: DVec3,
+    max_time: f64,
+    target_distance: f64,
+    cost: &mut Cost,
+) -> RayCast {
+    let towards_origin = (-cso.center()).normalize_or(DVec3::X);
+    let start = cso.support(towards_origin, cso.start(towards_origin), cost);
+    let mut ray = Ray {
+        velocity,
+        target_distance,
+        size: cso.size(),
+        time: 0.0,
+        separating: None,
+    };
+    let mut simplex = Simplex::new(start);
+    let mut ids = start.ids;
+    // From the ray's point to the nearest point of the simplex.
+    let mut toward = start.w;
+    for _ in 0..MAX_ITERATIONS {
+        cost.iterations += 1;
+        let norm = toward.length();
+        if !norm.is_finite() {
+            return RayCast::Miss;
+        }
+        if norm <= target_distance + ray.tolerance() {
+            return ray.arrived(&simplex, toward);
+        }
+        let vertex = cso.support(-toward, ids, cost);
+        ids = vertex.ids;
+        let advanced = match ray.advance(toward / norm, vertex.w) {
+            Step::Advanced if ray.time <= max_time => true,
+            Step::Stays => false,
+            Step::Advanced | Step::Leaves => return RayCast::Miss,
+        };
+        let known = simplex.contains(&vertex);
+        if !known {
+            simplex.push(vertex);
+        }
+        let reduced = simplex.reduce::<S>(ray.point());
+        // Without progress the nearest point is as near as rounding lets it come, and no plane
+        // separates it: this is the impact.
+        if !advanced && (known || reduced.length_squared() >= norm * norm) {
+            return ray.arrived(&simplex, toward);
+        }
+        toward = reduced;
+    }
+    // Too early a contact is better than none.
+    cost.fallbacks += 1;
+    ray.arrived(&simplex, toward)
+}
+
+/// The point that marches along the ray.
+struct Ray {
+    velocity: DVec3,
+    target_distance: f64,
+    size: f64,
+    time: f64,
+    /// The last direction (unit, towards the difference) whose support plane moved the point.
+    separating: Option<DVec3>,
+}
+
+/// What a support plane does to the point of the ray.
+enum Step {
+    /// It separated; the point now is on it.
+    Advanced,
+    /// It does not separate.
+    Stays,
+    /// It separates, and the ray does not lead through it.
+    Leaves,
+}
+
+impl Ray {
+    fn point(&self) -> DVec3 {
+        self.velocity * self.time
+    }
+
+    fn tolerance(&self) -> f64 {
+        RAY_TOUCHING * (self.size + self.point().length())
+    }
+
+    /// Moves on to the support plane through `vertex`, whose inward normal is `direction`.
+    fn advance(&mut self, direction: DVec3, vertex: DVec3) -> Step {
+        let separation = direction.dot(vertex - self.point()) - self.target_distance;
+        if separation <= 0.0 {
+            return Step::Stays;
+        }
+        let approach = direction.dot(self.velocity);
+        let time = self.time + separation / approach;
+        // Also for NaN, and for a plane so slant that it is never reached.
+        if !(approach > 0.0 && time.is_finite()) {
+            return Step::Leaves;
+        }
+        if time <= self.time {
+            return Step::Stays;
+        }
+        self.time = time;
+        self.separating = Some(direction);
+        Step::Advanced
+    }
+
+    fn arrived(&self, simplex: &Simplex, toward: DVec3) -> RayCast {
+        let Some(separating) = self.separating else {
+            return RayCast::Overlap;
+        };
+        // Across a gap the nearest points show the normal. Where they coincide they show
+        // nothing, but the ray rests on the plane of the last jump.
+        let direction = if self.target_distance > self.tolerance() {
+            toward.normalize_or(separating)
+        } else {
+            separating
+        };
+        let on_1 = simplex.on_1();
+        RayCast::Hit(Impact {
+            time: self.time,
+            normal: -direction,
+            on_1,
+            on_2: on_1 - toward,
+        })
+    }
+}
+
+/// The vertices that span the nearest point, with its weights.
+struct Simplex {
+    vertices: [CsoVertex; 4],
+    weights: [f64; 4],
+    len: usize,
+}
+
+impl Simplex {
+    fn new(vertex: CsoVertex) -> Self {
+        Self {
+            vertices: [vertex; 4],
+            weights: [1.0, 0.0, 0.0, 0.0],
+            len: 1,
+        }
+    }
+
+    fn contains(&self, vertex: &CsoVertex) -> bool {
+        self.vertices[..self.len].iter().any(|v| v.w == vertex.w)
+    }
+
+    fn push(&mut self, vertex: CsoVertex) {
+        self.vertices[self.len] = vertex;
+        self.len += 1;
+    }
+
+    /// Keeps the vertices that span its point nearest to `x`; returns how to get there from `x`.
+    fn reduce<S: DistanceSubalgorithm>(&mut self, x: DVec3) -> DVec3 {
+        let points = self.vertices.map(|vertex| vertex.w - x);
+        let nearest = S::nearest(&points[..self.len]);
+        let mut kept = 0;
+        for i in (0..self.len).filter(|i| nearest.face >> i & 1 == 1) {
+            self.vertices[kept] = self.vertices[i];
+            self.weights[kept] = nearest.lambda[i];
+            kept += 1;
+        }
+        self.len = kept;
+        nearest.point
+    }
+
+    fn on_1(&self) -> DVec3 {
+        let weighted = self.vertices[..self.len].iter().zip(self.weights);
+        weighted.map(|(v, weight)| v.on_1 * weight).sum()
+    }
+}
