@@ -40,7 +40,7 @@ pub trait Polytope: Support {
     /// Whether there is such a face.
     fn has_face(&self, face: FaceId) -> bool;
 
-    /// The outward unit normal of a face.
+    /// The outward unit normal of a face; zero for a sliver that has no plane of the shape.
     fn face_normal(&self, face: FaceId) -> DVec3;
 
     /// The largest `normal · p` over the shape.

@@ -13,6 +13,10 @@ pub const FACE_FLATNESS: f64 = 6e-7;
 /// (cosine), so that slivers of arbitrary direction cannot chain a face around a corner.
 pub const FACE_ANGLE_COS: f64 = 0.999_847_7;
 
+/// A triangle lower than this share of the radius is a sliver: rounding of its corners can turn
+/// its plane by several degrees.
+pub const SLIVER: f64 = 4e-6;
+
 /// How far (relative to the radius) a hull vertex may lie above the plane of a neighbouring
 /// triangle. Hull builders working in f32 leave defects of a few roundings.
 pub const CONVEXITY: f64 = 4e-6;
@@ -23,6 +27,14 @@ pub const THINNEST: f64 = 1e-6;
 /// Two support values closer than this share of `radius * |direction|` tie for hill climbing:
 /// vertices that are coplanar up to f32 rounding must be seen as one plateau.
 pub const PLATEAU: f64 = 4e-7;
+
+/// An edge shorter than this share of the radius may rise or fall by its ends' rounding alone, as
+/// steeply as anything that is climbed.
+pub const SHORT_EDGE: f64 = 1e-2;
+
+/// Neighbouring corners of a face tilted by `t` differ by `t (2 pi / n)^2 / 2` around its lowest
+/// one. With this many corners that is a rounding for tilts that matter.
+pub const LARGE_FACE: usize = 16;
 
 /// GJK stops when its bounds of the distance differ by less than this share of the distance...
 pub const GJK_RELATIVE_GAP: f64 = 1e-9;

@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
-use super::climb;
-use super::faces::Faces;
+use super::climb::{self, Slope};
+use super::faces::{Faces, triangle_neighbors};
 use super::graph::EdgeGraph;
 use super::start::StartTable;
 use super::{Hull, HullError};
@@ -52,21 +52,34 @@ impl Hull {
         require_triangles(&points, triangles)?;
         let mut graph = EdgeGraph::new(points.len(), triangles)?;
         let (center, radius) = center_and_radius(&points, triangles)?;
-        require_convex(&points, triangles, &graph, radius)?;
+        require_convex(&points, triangles, radius)?;
 
-        let support = |graph: &EdgeGraph, dir, start| {
-            climb::support(&points, graph, radius, dir, start, &mut Cost::default())
+        // Before the faces are known, every tie is looked into.
+        let everywhere = vec![true; points.len()];
+        let climb = |graph: &EdgeGraph, fragile: &[bool], dir, start| {
+            let slope = Slope {
+                points: &points,
+                graph,
+                fragile,
+                radius,
+            };
+            climb::support(slope, dir, start, &mut Cost::default())
         };
         let (faces, face_of) = Faces::new(&points, triangles, radius, |normal, start| {
-            normal.dot(support(&graph, normal, start).0)
+            normal.dot(climb(&graph, &everywhere, normal, start).0)
         });
         graph.set_faces(triangles, &face_of);
-        let start = StartTable::new(points.len(), |dir, start| support(&graph, dir, start).1);
+        let face_len = |f: u16| faces.polygon(f.into()).len();
+        let fragile = climb::fragile(&points, &graph, radius, face_len);
+        let start = StartTable::new(points.len(), |dir, start| {
+            climb(&graph, &fragile, dir, start).1
+        });
         let hull = Self {
             points: points.into(),
             graph,
             faces,
             start,
+            fragile,
             center,
             radius,
         };
@@ -140,23 +153,21 @@ fn center_and_radius(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(DVec3, 
     Ok((center, radius))
 }
 
-/// No neighbour of a triangle's vertices lies above its plane, beyond rounding. For a closed
-/// surface, convexity around every vertex is convexity.
-fn require_convex(
-    points: &[Vec3],
-    triangles: &[[u32; 3]],
-    graph: &EdgeGraph,
-    radius: f64,
-) -> Result<(), HullError> {
-    for triangle in triangles {
-        let [a, b, c] = triangle.map(|v| points[v as usize].as_dvec3());
-        let area = (b - a).cross(c - a);
-        let limit = CONVEXITY * radius * area.length();
-        for &v in triangle {
-            for &w in graph.neighbors(v) {
-                if area.dot(points[w as usize].as_dvec3() - a) > limit {
-                    return Err(HullError::NotConvex(w.into()));
-                }
+/// No edge is a dent, beyond rounding. For a closed surface, convexity at every edge is convexity.
+///
+/// A dent is as deep as the edge passes beneath the other diagonal of its two triangles. (Heights
+/// over the triangles' planes say nothing where these are slivers.)
+fn require_convex(points: &[Vec3], triangles: &[[u32; 3]], radius: f64) -> Result<(), HullError> {
+    let at = |v: u32| points[v as usize].as_dvec3();
+    for (t, around) in triangle_neighbors(triangles).into_iter().enumerate() {
+        for (k, other) in around.into_iter().enumerate() {
+            let [a, b, c] = [0, 1, 2].map(|i| triangles[t][(k + i) % 3]);
+            let opposite = triangles[other].into_iter().find(|&v| v != a && v != b);
+            let Some(d) = opposite else { continue };
+            let across = (at(b) - at(a)).cross(at(d) - at(c));
+            let rise = (at(b) - at(a)).cross(at(c) - at(a)).dot(at(d) - at(a));
+            if rise > CONVEXITY * radius * across.length() {
+                return Err(HullError::NotConvex(d as usize));
             }
         }
     }

@@ -2,110 +2,145 @@
 //! penetration distances between convex polyhedra*, ICRA 1997), with the base case corrected.
 //!
 //! From a vertex, move to the best neighbour while one is better. On a convex hull a vertex
-//! with no better neighbour is extreme, unless it ties with all of its neighbours: a vertex in
-//! the interior of a flat face may be the *worst* vertex in the direction of the face's inward
-//! normal. A vertex reached by an improving move has a strictly worse neighbour, so that only
-//! the start can be such a vertex. If it is, its plateau is searched for a vertex with a
-//! neighbour off the plateau: a better one to climb from, or a worse one, which proves that the
-//! plateau is the maximum.
+//! with no better neighbour is extreme, unless it ties with neighbours: a vertex in the interior
+//! of a flat face may be the *worst* vertex in the direction of the face's inward normal. In
+//! exact arithmetic only the start can be such a vertex, since a vertex reached by an improving
+//! move has a strictly worse neighbour. With rounded coordinates a tie may also hide a small rise
+//! or a small fall: over a very short edge, or along the rim of a face with many corners.
 //!
-//! Promise: with `s` the returned vertex, `h(d) - d·s <= PLATEAU * radius * |d|` wherever the
-//! hull is convex to rounding.
+//! Such vertices are known when the hull is built ([`fragile`]). A climb that ends at one of them
+//! with a neighbour that ties searches the plateau for a vertex above it, and climbs on from
+//! there.
+//!
+//! Promise: with `s` the returned vertex, `h(d) - d·s` is at most a few [`PLATEAU`]` * radius *
+//! |d|` wherever the hull is convex to rounding.
 
 use glam::{DVec3, Vec3};
 
 use super::graph::{EdgeGraph, LANES};
 use crate::stats::Cost;
 use crate::support::VertexId;
-use crate::tolerance::PLATEAU;
+use crate::tolerance::{LARGE_FACE, PLATEAU, SHORT_EDGE};
+
+/// What a climb goes over.
+#[derive(Clone, Copy)]
+pub(super) struct Slope<'a> {
+    pub points: &'a [Vec3],
+    pub graph: &'a EdgeGraph,
+    /// Vertices at which a tie must be looked into.
+    pub fragile: &'a [bool],
+    pub radius: f64,
+}
 
 /// The extreme vertex in direction `dir`, climbing from `start`.
 #[inline]
 pub(super) fn support(
-    points: &[Vec3],
-    graph: &EdgeGraph,
-    radius: f64,
+    slope: Slope<'_>,
     dir: DVec3,
     start: VertexId,
     cost: &mut Cost,
 ) -> (DVec3, VertexId) {
     cost.supports += 1;
-    let start_value = dir.dot(points[start as usize].as_dvec3());
-    let mut best = start;
-    let mut value = start_value;
-    let worst_neighbor;
-    (value, best, worst_neighbor) = best_neighbor(points, graph.rows(best), dir, value, best);
-    let mut last = start;
-    while best != last {
-        last = best;
-        cost.climb_moves += 1;
-        (value, best, _) = best_neighbor(points, graph.rows(best), dir, value, best);
-    }
-    // If a neighbour of the start lies off the plateau, or the climb left it upwards, the end
-    // is a maximum.
-    let off = (value - start_value).max(start_value - worst_neighbor);
-    let tie = PLATEAU * radius;
-    if off * off <= tie * tie * dir.length_squared()
-        && let Some(exit) = leave_plateau(points, graph, tie, dir, best)
-    {
-        cost.climb_moves += 1;
-        return support(points, graph, radius, dir, exit, cost);
-    }
-    (points[best as usize].as_dvec3(), best)
-}
-
-/// The best of a vertex, `best` with `value`, and its neighbours; and the least value of these.
-/// Four at a time, and selections instead of branches: neither how many neighbours there are nor
-/// which of them is better is predictable.
-#[inline(always)]
-fn best_neighbor(
-    points: &[Vec3],
-    rows: &[[u16; LANES]],
-    dir: DVec3,
-    mut value: f64,
-    mut best: VertexId,
-) -> (f64, VertexId, f64) {
-    let mut worst = f64::INFINITY;
-    for row in rows {
-        let values = row.map(|w| dir.dot(points[w as usize].as_dvec3()));
-        for (&w, d) in row.iter().zip(values) {
-            let better = d > value;
-            best = if better { w.into() } else { best };
-            value = if better { d } else { value };
-            worst = if d < worst { d } else { worst };
+    let mut at = start;
+    let mut value = slope.height(dir, at);
+    loop {
+        let step = slope.best_neighbor(dir, value, at);
+        if step.best != at {
+            (at, value) = (step.best, step.value);
+            cost.climb_moves += 1;
+            continue;
         }
+        let fall = value - step.top;
+        let tie = PLATEAU * slope.radius;
+        if fall * fall <= tie * tie * dir.length_squared()
+            && slope.fragile[at as usize]
+            && let Some(exit) = slope.leave_plateau(dir, at)
+        {
+            (at, value) = (exit, slope.height(dir, exit));
+            cost.climb_moves += 1;
+            continue;
+        }
+        return (slope.points[at as usize].as_dvec3(), at);
     }
-    (value, best, worst)
 }
 
-/// A vertex above the plateau around `start`, or `None` if the plateau is the maximum.
-#[cold]
-#[inline(never)]
-fn leave_plateau(
+/// What a look around a vertex showed.
+struct Step {
+    /// The best of the vertex and its neighbours, and its height.
+    best: VertexId,
+    value: f64,
+    /// The height of the best neighbour.
+    top: f64,
+}
+
+impl Slope<'_> {
+    #[inline]
+    fn height(&self, dir: DVec3, vertex: VertexId) -> f64 {
+        dir.dot(self.points[vertex as usize].as_dvec3())
+    }
+
+    /// A row at a time, and selections instead of branches: neither how many neighbours there are
+    /// nor which of them is better is predictable.
+    #[inline(always)]
+    fn best_neighbor(&self, dir: DVec3, mut value: f64, at: VertexId) -> Step {
+        let mut best = at;
+        let mut top = f64::NEG_INFINITY;
+        for row in self.graph.rows(at) {
+            let values: [f64; LANES] = row.map(|w| self.height(dir, w.into()));
+            for (&w, d) in row.iter().zip(values) {
+                let better = d > value;
+                best = if better { w.into() } else { best };
+                value = if better { d } else { value };
+                top = if d > top { d } else { top };
+            }
+        }
+        Step { best, value, top }
+    }
+
+    /// A vertex above the plateau around `start`, or `None` if the plateau is the maximum.
+    #[cold]
+    #[inline(never)]
+    fn leave_plateau(&self, dir: DVec3, start: VertexId) -> Option<VertexId> {
+        let tie = PLATEAU * self.radius * dir.length();
+        let level = self.height(dir, start);
+        let mut plateau = vec![start];
+        let mut next = 0;
+        while let Some(&v) = plateau.get(next) {
+            for &w in self.graph.neighbors(v) {
+                let height = self.height(dir, w.into());
+                if height > level + tie {
+                    return Some(w.into());
+                }
+                if height >= level - tie && !plateau.contains(&w.into()) {
+                    plateau.push(w.into());
+                }
+            }
+            next += 1;
+        }
+        None
+    }
+}
+
+/// The vertices at which a tie may hide a way up: those inside of a face or of a straight edge
+/// (with fewer than three faces), with a very short edge, or on a face of many corners.
+pub(super) fn fragile(
     points: &[Vec3],
     graph: &EdgeGraph,
-    tie: f64,
-    dir: DVec3,
-    start: VertexId,
-) -> Option<VertexId> {
-    let tie = tie * dir.length();
-    let level = dir.dot(points[start as usize].as_dvec3());
-    let mut seen = vec![false; points.len()];
-    let mut stack = vec![start];
-    seen[start as usize] = true;
-    while let Some(v) = stack.pop() {
-        for &w in graph.neighbors(v) {
-            let d = dir.dot(points[w as usize].as_dvec3());
-            if d > level + tie {
-                return Some(w.into());
-            }
-            if d < level - tie {
-                return None;
-            }
-            if !std::mem::replace(&mut seen[w as usize], true) {
-                stack.push(w.into());
-            }
-        }
-    }
-    None
+    radius: f64,
+    face_len: impl Fn(u16) -> usize,
+) -> Box<[bool]> {
+    (0..points.len() as VertexId)
+        .map(|v| {
+            let here = points[v as usize].as_dvec3();
+            let short = graph
+                .neighbors(v)
+                .iter()
+                .any(|&w| points[w as usize].as_dvec3().distance(here) < SHORT_EDGE * radius);
+            let mut faces = graph.faces_at(v).to_vec();
+            faces.sort_unstable();
+            faces.dedup();
+            let corner = faces.len() >= 3;
+            short || !corner || faces.iter().any(|&f| face_len(f) >= LARGE_FACE)
+        })
+        .collect()
 }

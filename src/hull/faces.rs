@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::support::{FaceId, VertexId};
-use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS};
+use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, SLIVER};
 
 /// Planes, and polygons in compressed rows.
 #[derive(Clone, Debug)]
@@ -18,6 +18,15 @@ pub(super) struct Faces {
 struct Plane {
     normal: Vec3,
     offset: f64,
+}
+
+impl Plane {
+    /// That of a sliver whose direction is rounding only: no plane of the hull, and farther out
+    /// than any.
+    const UNSUPPORTED: Self = Self {
+        normal: Vec3::ZERO,
+        offset: f64::INFINITY,
+    };
 }
 
 impl Faces {
@@ -35,15 +44,21 @@ impl Faces {
         let mut planes = Vec::new();
         let mut face_of = vec![0_u16; triangles.len()];
         for region in regions.all {
-            for polygon in polygons(triangles, &region) {
+            for polygon in polygons(points, triangles, &region, radius) {
                 for &t in &polygon.triangles {
                     face_of[t] = planes.len() as u16;
                 }
                 let normal = polygon_normal(points, &polygon.vertices).as_vec3();
-                let start = polygon.vertices[0].into();
-                planes.push(Plane {
-                    normal,
-                    offset: offset(normal.as_dvec3(), start),
+                let start = polygon.vertices[0];
+                let offset = offset(normal.as_dvec3(), start.into());
+                let below = |&v: &u16| {
+                    offset - normal.as_dvec3().dot(points[v as usize].as_dvec3())
+                        > 2.0 * FACE_FLATNESS * radius
+                };
+                planes.push(if polygon.vertices.iter().any(below) {
+                    Plane::UNSUPPORTED
+                } else {
+                    Plane { normal, offset }
                 });
                 vertices.extend_from_slice(&polygon.vertices);
                 first.push(vertices.len() as u32);
@@ -101,6 +116,11 @@ fn area_vector(points: &[Vec3], triangle: [u32; 3]) -> DVec3 {
     (b - a).cross(c - a)
 }
 
+fn longest_side(points: &[Vec3], triangle: [u32; 3]) -> f64 {
+    let [a, b, c] = triangle.map(|v| points[v as usize].as_dvec3());
+    a.distance(b).max(b.distance(c)).max(c.distance(a))
+}
+
 /// Twice the area vector of a polygon, normalised (Newell's method, about its first vertex).
 fn polygon_normal(points: &[Vec3], polygon: &[u16]) -> DVec3 {
     let at = |i: usize| points[polygon[i] as usize].as_dvec3();
@@ -143,8 +163,10 @@ impl Regions {
                         let height = normal.dot(points[v as usize].as_dvec3()) - level;
                         height.abs() <= FACE_FLATNESS * radius
                     });
-                    // A triangle without area has no direction; its neighbours decide.
-                    let turned = normal.dot(areas[t]) < FACE_ANGLE_COS * areas[t].length();
+                    // The direction of a sliver is rounding only; its neighbours decide.
+                    let area = areas[t].length();
+                    let sliver = area <= SLIVER * radius * longest_side(points, triangles[t]);
+                    let turned = !sliver && normal.dot(areas[t]) < FACE_ANGLE_COS * area;
                     if !taken[t] && flat && !turned {
                         taken[t] = true;
                         region.push(t);
@@ -159,7 +181,7 @@ impl Regions {
 }
 
 /// For each triangle the three that share an edge with it. The surface is closed.
-fn triangle_neighbors(triangles: &[[u32; 3]]) -> Vec<[usize; 3]> {
+pub(super) fn triangle_neighbors(triangles: &[[u32; 3]]) -> Vec<[usize; 3]> {
     let mut edges: Vec<(u32, u32, usize, usize)> = Vec::with_capacity(triangles.len() * 3);
     for (t, triangle) in triangles.iter().enumerate() {
         for k in 0..3 {
@@ -183,8 +205,13 @@ struct Polygon {
     triangles: Vec<usize>,
 }
 
-/// The boundary of a region as one polygon; triangle by triangle where it is not one loop.
-fn polygons(triangles: &[[u32; 3]], region: &[usize]) -> Vec<Polygon> {
+/// The boundary of a region as one polygon; triangle by triangle where it is not one convex loop.
+fn polygons(
+    points: &[Vec3],
+    triangles: &[[u32; 3]],
+    region: &[usize],
+    radius: f64,
+) -> Vec<Polygon> {
     let single = |t: usize| Polygon {
         vertices: triangles[t].map(|v| v as u16).into(),
         triangles: vec![t],
@@ -192,13 +219,27 @@ fn polygons(triangles: &[[u32; 3]], region: &[usize]) -> Vec<Polygon> {
     if let [t] = region {
         return vec![single(*t)];
     }
-    match boundary_loop(triangles, region) {
+    let convex = |vertices: &Vec<u16>| is_convex(points, vertices, radius);
+    match boundary_loop(triangles, region).filter(convex) {
         Some(vertices) => vec![Polygon {
             vertices,
             triangles: region.into(),
         }],
         None => region.iter().map(|&t| single(t)).collect(),
     }
+}
+
+/// Whether no corner is a dent, beyond rounding.
+fn is_convex(points: &[Vec3], polygon: &[u16], radius: f64) -> bool {
+    let normal = polygon_normal(points, polygon);
+    let count = polygon.len();
+    let at = |i: usize| points[polygon[i % count] as usize].as_dvec3();
+    (0..count).all(|i| {
+        let (before, here, after) = (at(i), at(i + 1), at(i + 2));
+        let chord = after - before;
+        let outward = normal.dot((here - before).cross(chord));
+        outward >= -FACE_FLATNESS * radius * chord.length()
+    })
 }
 
 fn boundary_loop(triangles: &[[u32; 3]], region: &[usize]) -> Option<Vec<u16>> {

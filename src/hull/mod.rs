@@ -15,6 +15,7 @@ use glam::{DVec3, Vec3};
 
 use crate::stats::Cost;
 use crate::support::{FaceId, Polytope, Support, VertexId};
+use climb::Slope;
 use faces::Faces;
 use graph::EdgeGraph;
 use start::StartTable;
@@ -28,6 +29,7 @@ pub struct Hull {
     graph: EdgeGraph,
     faces: Faces,
     start: StartTable,
+    fragile: Box<[bool]>,
     center: DVec3,
     radius: f64,
 }
@@ -54,13 +56,20 @@ impl Hull {
             + self.graph.heap_bytes()
             + self.faces.heap_bytes()
             + self.start.heap_bytes()
+            + size_of_val(&*self.fragile)
     }
 }
 
 impl Support for Hull {
     #[inline]
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
-        climb::support(&self.points, &self.graph, self.radius, dir, start, cost)
+        let slope = Slope {
+            points: &self.points,
+            graph: &self.graph,
+            fragile: &self.fragile,
+            radius: self.radius,
+        };
+        climb::support(slope, dir, start, cost)
     }
 
     #[inline]

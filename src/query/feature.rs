@@ -204,6 +204,9 @@ impl Test {
         cost: &mut Cost,
     ) -> Verdict {
         let normal = p.face_normal(face);
+        if normal == DVec3::ZERO {
+            return Verdict::NoPlane; // a sliver without a plane
+        }
         let (on_q, q_id) = q.support(-q_pose.direction_to_2(normal), start, cost);
         let on_q = q_pose.point_to_1(on_q);
         let signed_distance = normal.dot(on_q) - p.face_offset(face);
