@@ -19,41 +19,63 @@ use crate::tolerance::{GJK_ABSOLUTE_GAP, GJK_RELATIVE_GAP, TOUCHING};
 /// bound only guards against a stall that no other test sees.
 const MAX_ITERATIONS: usize = 256;
 
-/// At most four vertices of the Minkowski difference.
+/// At most four vertices of the Minkowski difference, each in a slot of its own: dropping one is
+/// clearing a bit, and a vertex that was added on trial leaves the others where they were.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Simplex {
-    vertices: [CsoVertex; 4],
-    len: usize,
+    slots: [CsoVertex; 4],
+    occupied: u8,
 }
 
 impl Simplex {
     /// The vertices.
-    pub fn vertices(&self) -> &[CsoVertex] {
-        &self.vertices[..self.len]
+    pub fn vertices(&self) -> impl Iterator<Item = &CsoVertex> + Clone {
+        self.weighted(&[0.0; 4]).map(|(vertex, _)| vertex)
     }
 
-    fn push(&mut self, vertex: CsoVertex) {
-        self.vertices[self.len] = vertex;
-        self.len += 1;
+    fn weighted(&self, weights: &[f64; 4]) -> impl Iterator<Item = (&CsoVertex, f64)> + Clone {
+        let slots = self.slots.iter().zip(*weights).enumerate();
+        slots
+            .filter(|(i, _)| self.occupied >> i & 1 == 1)
+            .map(|(_, vertex)| vertex)
     }
 
     fn contains(&self, vertex: &CsoVertex) -> bool {
-        self.vertices().iter().any(|v| v.w == vertex.w)
+        self.vertices().any(|v| v.w == vertex.w)
     }
 
-    /// Keeps the vertices whose bits are set in `face`, and their weights in order.
-    fn reduce(&mut self, face: u8, lambda: [f64; 4]) -> [f64; 4] {
-        let mut weights = [0.0; 4];
-        let mut kept = 0;
-        for i in 0..self.len {
-            if face >> i & 1 == 1 {
-                self.vertices[kept] = self.vertices[i];
-                weights[kept] = lambda[i];
-                kept += 1;
+    /// Puts a vertex into the lowest free slot. There is one: a full simplex ends the loop.
+    fn push(&mut self, vertex: CsoVertex) {
+        let slot = self.occupied.trailing_ones() as usize;
+        self.slots[slot] = vertex;
+        self.occupied |= 1 << slot;
+    }
+
+    /// The point nearest to the origin; its face and weights refer to slots.
+    fn nearest<S: DistanceSubalgorithm>(&self) -> Nearest {
+        let mut points = [DVec3::ZERO; 4];
+        let mut slots = [0; 4];
+        let mut count = 0;
+        for slot in 0..4 {
+            if self.occupied >> slot & 1 == 1 {
+                points[count] = self.slots[slot].w;
+                slots[count] = slot;
+                count += 1;
             }
         }
-        self.len = kept;
-        weights
+        let nearest = S::nearest(&points[..count]);
+        if slots[..count] == [0, 1, 2, 3][..count] {
+            return nearest;
+        }
+        let mut by_slot = Nearest {
+            point: nearest.point,
+            ..Nearest::default()
+        };
+        for (i, &slot) in slots[..count].iter().enumerate() {
+            by_slot.face |= (nearest.face >> i & 1) << slot;
+            by_slot.lambda[slot] = nearest.lambda[i];
+        }
+        by_slot
     }
 }
 
@@ -73,6 +95,10 @@ pub struct Closest {
     /// The smallest simplex that holds the difference of the points.
     pub simplex: Simplex,
 }
+
+/// An axis along which the shapes are separated by this share of their distance is kept: a
+/// weaker one would fail again as soon as the shapes move, a better one costs more iterations.
+const LASTING_AXIS: f64 = 0.5;
 
 /// How a GJK run ended.
 #[derive(Clone, Copy, Debug)]
@@ -120,23 +146,27 @@ pub fn test_axis<A: Support, B: Support>(
     }
 }
 
-/// Distance and nearest points, starting from any vertex of the Minkowski difference; the nearer
-/// to the origin it lies, the fewer the iterations. Ends early, with a separating axis, when the
-/// distance is proved to exceed `max_distance`.
+/// Distance and nearest points, starting from one to three vertices of the Minkowski difference;
+/// the nearer to the origin they lie, the fewer the iterations. Ends early, with a separating
+/// axis, when the distance is proved to exceed `max_distance`.
 pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
-    start: CsoVertex,
+    start: &[CsoVertex],
     max_distance: f64,
     cost: &mut Cost,
 ) -> Outcome {
     let size = cso.size();
     let mut simplex = Simplex::default();
-    simplex.push(start);
-    let mut weights = [1.0, 0.0, 0.0, 0.0];
-    let mut v = start.w;
-    let mut ids = start.ids;
+    let mut ids = [0; 2];
+    for &vertex in start.iter().take(3) {
+        simplex.push(vertex);
+        ids = vertex.ids;
+    }
+    let mut nearest = simplex.nearest::<S>();
+    simplex.occupied = nearest.face;
     for _ in 0..MAX_ITERATIONS {
         cost.iterations += 1;
+        let v = nearest.point;
         let norm = v.length();
         if norm.partial_cmp(&(TOUCHING * size)) != Some(std::cmp::Ordering::Greater) {
             return Outcome::Overlap(simplex);
@@ -144,7 +174,7 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
         let w = cso.support(-v, ids, cost);
         ids = w.ids;
         let lower_bound = v.dot(w.w) / norm;
-        if lower_bound > max_distance {
+        if lower_bound > max_distance && lower_bound >= LASTING_AXIS * norm {
             return Outcome::Apart(SeparatingAxis {
                 axis: -v / norm,
                 separation: lower_bound,
@@ -154,40 +184,34 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
         let gap = norm - lower_bound;
         let converged = gap <= GJK_RELATIVE_GAP * norm || gap <= GJK_ABSOLUTE_GAP * size;
         if converged || simplex.contains(&w) {
-            return Outcome::Near(closest(&simplex, weights, v, lower_bound));
+            return Outcome::Near(closest(&simplex, &nearest, lower_bound));
         }
-        let mut grown = simplex;
-        grown.push(w);
-        let nearest = nearest::<S>(&grown);
-        if nearest.face == 0b1111 {
-            return Outcome::Overlap(grown);
+        let before = simplex.occupied;
+        simplex.push(w);
+        let next = simplex.nearest::<S>();
+        if next.face == 0b1111 {
+            return Outcome::Overlap(simplex);
         }
         // In exact arithmetic the norm decreases strictly; where it does not, rounding has the
         // last word and the answer at hand is as good as it gets.
-        if nearest.point.length_squared() >= norm * norm {
-            return Outcome::Near(closest(&simplex, weights, v, lower_bound));
+        if next.point.length_squared() >= norm * norm {
+            simplex.occupied = before;
+            return Outcome::Near(closest(&simplex, &nearest, lower_bound));
         }
-        v = nearest.point;
-        weights = grown.reduce(nearest.face, nearest.lambda);
-        simplex = grown;
+        nearest = next;
+        simplex.occupied = nearest.face;
     }
     cost.fallbacks += 1;
-    let w = cso.support(-v, ids, cost);
-    Outcome::Near(closest(&simplex, weights, v, v.dot(w.w) / v.length()))
+    let v = nearest.point;
+    let lower_bound = v.dot(cso.support(-v, ids, cost).w) / v.length();
+    Outcome::Near(closest(&simplex, &nearest, lower_bound))
 }
 
-#[inline]
-fn nearest<S: DistanceSubalgorithm>(simplex: &Simplex) -> Nearest {
-    let points = simplex.vertices.map(|vertex| vertex.w);
-    S::nearest(&points[..simplex.len])
-}
-
-fn closest(simplex: &Simplex, weights: [f64; 4], v: DVec3, lower_bound: f64) -> Closest {
+fn closest(simplex: &Simplex, nearest: &Nearest, lower_bound: f64) -> Closest {
+    let v = nearest.point;
     let distance = v.length();
     let on_1: DVec3 = simplex
-        .vertices()
-        .iter()
-        .zip(weights)
+        .weighted(&nearest.lambda)
         .map(|(vertex, weight)| vertex.on_1 * weight)
         .sum();
     Closest {

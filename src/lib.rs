@@ -5,6 +5,7 @@ pub mod dispatcher;
 pub mod epa;
 pub mod gjk;
 pub mod hull;
+pub mod hull_shape;
 pub mod manifold;
 pub mod pose;
 pub mod primitive;
@@ -17,4 +18,5 @@ pub mod tolerance;
 
 pub use dispatcher::IsaGjkDispatcher;
 pub use hull::{Hull, HullError};
+pub use hull_shape::HullShape;
 pub use stats::{Stage, Stats};

@@ -55,6 +55,9 @@ pub trait Polytope: Support {
     /// The face at `vertex` that looks most in direction `dir`.
     fn face_at(&self, vertex: VertexId, dir: DVec3) -> FaceId;
 
+    /// Of the faces on both sides of an edge the one that looks most in direction `dir`.
+    fn face_beside(&self, ends: [VertexId; 2], dir: DVec3) -> FaceId;
+
     /// The name of the edge between two neighbouring vertices.
     fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32>;
 

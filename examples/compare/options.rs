@@ -55,6 +55,10 @@ pub struct Options {
     #[arg(long, value_enum, default_value_t = Switch::On)]
     recycling: Switch,
 
+    /// Give the world of isa-gjk `HullShape` colliders; the default one keeps plain hulls
+    #[arg(long)]
+    hull_shape: bool,
+
     /// Whole runs; the table shows the median of each figure and of each ratio over them
     #[arg(long, default_value_t = 1, value_parser = value_parser!(u32).range(1..=1000))]
     pub repeat: u32,
@@ -115,6 +119,7 @@ impl Options {
             bodies: self.bodies.unwrap_or(self.scene.default_bodies()),
             seed: self.seed,
             recycling: self.recycling == Switch::On,
+            hull_shape: self.hull_shape,
         })
     }
 

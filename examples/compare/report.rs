@@ -16,6 +16,7 @@ pub struct Report {
     bodies: u32,
     seed: u64,
     recycling: bool,
+    hull_shape: bool,
     warmup: usize,
     frames: usize,
     repeat: usize,
@@ -68,6 +69,7 @@ impl Report {
             bodies: params.bodies,
             seed: params.seed,
             recycling: params.recycling,
+            hull_shape: params.hull_shape,
             warmup: length.warmup,
             frames: length.frames,
             repeat: runs.len(),
@@ -173,9 +175,14 @@ fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let recycling = if self.recycling { "on" } else { "off" };
+        let prepared = if self.hull_shape {
+            " (HullShape for isa-gjk)"
+        } else {
+            ""
+        };
         writeln!(
             f,
-            "{}: {} bodies, {}, seed {}, recycling {recycling}",
+            "{}: {} bodies, {}{prepared}, seed {}, recycling {recycling}",
             self.scene, self.bodies, self.hulls, self.seed
         )?;
         writeln!(

@@ -18,6 +18,7 @@ use parry3d::shape::PackedFeatureId;
 use crate::gjk::SeparatingAxis;
 use crate::query::{self, Feature, Memory, Proximity};
 use crate::support::{Cso, Polytope};
+use crate::tolerance::UNIT_NORMAL;
 
 /// Reads what the previous frame left.
 #[inline]
@@ -60,12 +61,13 @@ pub(super) fn write_start<A: Polytope, B: Polytope, M, C>(
     write_axis(manifold, &start);
 }
 
-/// A vector that was a unit vector before rounding, or nothing.
+/// A vector that is a unit vector up to rounding, or nothing. (Separations along it are then right
+/// to the same relative rounding.)
+#[inline]
 fn unit(v: Vec3) -> Option<DVec3> {
     let v = v.as_dvec3();
-    let length = v.length();
     // Also false for NaN.
-    ((length - 1.0).abs() < 1e-3).then(|| v / length)
+    ((v.length_squared() - 1.0).abs() < UNIT_NORMAL).then_some(v)
 }
 
 const KIND: u32 = 0b11 << 30;

@@ -38,7 +38,10 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         borders: [f64; 2],
         scratch: &mut Scratch<'_>,
     ) -> Option<()> {
-        let pose = RelativePose::new(self.pos12)?;
+        if !RelativePose::is_valid(self.pos12) {
+            return None;
+        }
+        let pose = RelativePose::new(self.pos12);
         let cso = Cso {
             shape_1,
             shape_2,

@@ -12,8 +12,7 @@ use std::hash::{BuildHasherDefault, Hasher};
 use glam::Vec3;
 use parry3d::shape::ConvexPolyhedron;
 
-use super::topology;
-use crate::hull::Hull;
+use crate::hull::{Hull, topology};
 
 /// Bytes of prepared hulls that are kept without asking whether they are still in use.
 const KEEP_BYTES: usize = 16 << 20;

@@ -6,7 +6,6 @@ mod convex;
 mod hulls;
 mod pair;
 mod scene;
-mod topology;
 
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints, ShapeCastOptions};

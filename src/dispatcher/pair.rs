@@ -7,6 +7,7 @@ use parry3d::shape::{Shape, ShapeType, Triangle};
 use super::hulls::{HullRef, HullTable};
 use crate::epa::EpaScratch;
 use crate::hull::Hull;
+use crate::hull_shape::HullShape;
 use crate::manifold::ClipScratch;
 use crate::primitive::{CuboidPolytope, TrianglePolytope};
 use crate::support::Polytope;
@@ -24,15 +25,30 @@ thread_local! {
 }
 
 /// A polytope with a rounded border of this radius around it.
-struct Solid {
-    core: Core,
+struct Solid<'a> {
+    core: Core<'a>,
     border: f64,
 }
 
-enum Core {
-    Hull(HullRef),
+enum Core<'a> {
+    /// The prepared hull that a shape brings along.
+    Hull(&'a Hull),
+    /// The one that was prepared for a shape.
+    Found(HullRef),
     Cuboid(CuboidPolytope),
     Triangle(TrianglePolytope),
+}
+
+impl<'a> Core<'a> {
+    /// The hull, if it is one.
+    #[inline]
+    fn hull(&self, table: &'a HullTable) -> Option<&'a Hull> {
+        match self {
+            Self::Hull(hull) => Some(hull),
+            Self::Found(place) => table.get(*place),
+            Self::Cuboid(_) | Self::Triangle(_) => None,
+        }
+    }
 }
 
 /// Something to do with two polytopes of whatever types.
@@ -57,11 +73,12 @@ pub(super) struct Scratch<'a> {
 }
 
 /// Whether a shape is a hull to us, so that pairs with it are ours to answer.
-fn is_hull(shape_type: ShapeType) -> bool {
-    matches!(
-        shape_type,
-        ShapeType::ConvexPolyhedron | ShapeType::RoundConvexPolyhedron
-    )
+fn is_hull(shape: &dyn Shape, shape_type: ShapeType) -> bool {
+    match shape_type {
+        ShapeType::ConvexPolyhedron | ShapeType::RoundConvexPolyhedron => true,
+        ShapeType::Custom => shape.as_shape::<HullShape>().is_some(),
+        _ => false,
+    }
 }
 
 /// Visits the pair if one of its shapes is a hull and both are polytopes; else `None`.
@@ -72,7 +89,7 @@ pub(super) fn visit<V: PairVisitor>(
     visitor: V,
 ) -> Option<V::Output> {
     let types = [shape_1.shape_type(), shape_2.shape_type()];
-    if !types.into_iter().any(is_hull) {
+    if !is_hull(shape_1, types[0]) && !is_hull(shape_2, types[1]) {
         return None;
     }
     WORKBENCH.with_borrow_mut(|bench| {
@@ -80,33 +97,36 @@ pub(super) fn visit<V: PairVisitor>(
         let solid_1 = solid(shape_1, types[0], &mut bench.hulls)?;
         let solid_2 = solid(shape_2, types[1], &mut bench.hulls)?;
         let borders = [solid_1.border, solid_2.border];
-        let hull = |place| bench.hulls.get(place);
+        let hulls = [&solid_1, &solid_2].map(|solid| solid.core.hull(&bench.hulls));
         let scratch = &mut Scratch {
             epa: &mut bench.epa,
             clip: &mut bench.clip,
         };
-        Some(match (&solid_1.core, &solid_2.core) {
-            (Core::Hull(a), Core::Hull(b)) => {
-                visitor.visit::<Hull, Hull>(hull(*a)?, hull(*b)?, borders, scratch)
-            }
-            (Core::Hull(a), Core::Cuboid(b)) => visitor.visit(hull(*a)?, b, borders, scratch),
-            (Core::Cuboid(a), Core::Hull(b)) => visitor.visit(a, hull(*b)?, borders, scratch),
-            (Core::Hull(a), Core::Triangle(b)) => visitor.visit(hull(*a)?, b, borders, scratch),
-            (Core::Triangle(a), Core::Hull(b)) => visitor.visit(a, hull(*b)?, borders, scratch),
+        Some(match (hulls, &solid_1.core, &solid_2.core) {
+            ([Some(a), Some(b)], ..) => visitor.visit(a, b, borders, scratch),
+            ([Some(a), _], _, Core::Cuboid(b)) => visitor.visit(a, b, borders, scratch),
+            ([_, Some(b)], Core::Cuboid(a), _) => visitor.visit(a, b, borders, scratch),
+            ([Some(a), _], _, Core::Triangle(b)) => visitor.visit(a, b, borders, scratch),
+            ([_, Some(b)], Core::Triangle(a), _) => visitor.visit(a, b, borders, scratch),
             _ => return None,
         })
     })
 }
 
-fn solid(shape: &dyn Shape, shape_type: ShapeType, hulls: &mut HullTable) -> Option<Solid> {
+fn solid<'a>(
+    shape: &'a dyn Shape,
+    shape_type: ShapeType,
+    hulls: &mut HullTable,
+) -> Option<Solid<'a>> {
     let (core, border) = match shape_type {
+        ShapeType::Custom => (Core::Hull(shape.as_shape::<HullShape>()?.hull()), 0.0),
         ShapeType::ConvexPolyhedron => {
-            (Core::Hull(hulls.find(shape.as_convex_polyhedron()?)?), 0.0)
+            (Core::Found(hulls.find(shape.as_convex_polyhedron()?)?), 0.0)
         }
         ShapeType::RoundConvexPolyhedron => {
             let round = shape.as_round_convex_polyhedron()?;
             (
-                Core::Hull(hulls.find(&round.inner_shape)?),
+                Core::Found(hulls.find(&round.inner_shape)?),
                 round.border_radius,
             )
         }
@@ -135,7 +155,7 @@ fn solid(shape: &dyn Shape, shape_type: ShapeType, hulls: &mut HullTable) -> Opt
     })
 }
 
-fn triangle(triangle: &Triangle) -> Option<Core> {
+fn triangle(triangle: &Triangle) -> Option<Core<'static>> {
     let corners = [triangle.a, triangle.b, triangle.c].map(|p| p.as_dvec3());
     TrianglePolytope::new(corners).map(Core::Triangle)
 }

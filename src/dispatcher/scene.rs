@@ -52,7 +52,10 @@ impl PairVisitor for ColdQuery<'_> {
         borders: [f64; 2],
         scratch: &mut Scratch<'_>,
     ) -> Self::Output {
-        let pose = RelativePose::new(self.pos12)?;
+        if !RelativePose::is_valid(self.pos12) {
+            return None;
+        }
+        let pose = RelativePose::new(self.pos12);
         let cso = Cso {
             shape_1,
             shape_2,

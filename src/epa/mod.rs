@@ -50,35 +50,38 @@ pub struct EpaScratch {
 /// The penetration depth, growing from the hull of `seeds`: points of the Minkowski difference,
 /// usually GJK's last simplex or the features of the previous frame.
 ///
-/// Stops early, with a negative depth, when a face's normal separates the shapes. `None` if the
-/// Minkowski difference has no volume or is not finite.
+/// Only answers that are less deep than `known_depth` by more than the tolerance are of interest:
+/// [`Depth::Known`] says that there is none. Stops early, with a negative depth, when a face's
+/// normal separates the shapes. `None` if the Minkowski difference has no volume or is not
+/// finite.
 pub fn penetration<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     seeds: &[CsoVertex],
+    known_depth: f64,
     scratch: &mut EpaScratch,
     cost: &mut Cost,
-) -> Option<Penetration> {
-    let size = cso.size();
+) -> Option<Depth> {
     let polytope = &mut scratch.polytope;
-    polytope.start(seed::tetrahedron(cso, seeds, cost)?, size);
+    polytope.start(seed::tetrahedron(cso, seeds, cost)?, cso.size());
     let tolerance = DEPTH_GAP * cso.smaller_radius();
-    let mut best: Option<Penetration> = None;
-    let mut lower_bound = f64::NEG_INFINITY;
+    let mut best = (f64::INFINITY, None);
     for _ in 0..MAX_EXPANSIONS {
         let Some(face) = polytope.nearest_face() else {
             break;
         };
-        cost.iterations += 1;
         let (normal, distance) = polytope.plane(face);
-        lower_bound = distance;
+        if distance >= known_depth - tolerance {
+            return Some(Depth::Known);
+        }
+        cost.iterations += 1;
         let corners = polytope.corners(face);
         let w = cso.support(normal, corners[0].ids, cost);
         let depth = normal.dot(w.w);
-        if best.is_none_or(|b| depth < b.depth) {
-            best = Some(witness(corners, normal, depth));
-        }
         if depth < -tolerance || depth - distance <= tolerance {
-            return Some(finish(witness(corners, normal, depth), lower_bound));
+            return Some(Depth::Found(witness(corners, normal, [distance, depth])));
+        }
+        if depth < best.0 {
+            best = (depth, Some((corners, normal)));
         }
         // A face that cannot be expanded (a sliver with an unreliable normal) is passed over.
         if polytope.contains(&w) || !polytope.expand(face, w) {
@@ -87,17 +90,24 @@ pub fn penetration<A: Support, B: Support>(
         }
     }
     cost.fallbacks += 1;
-    best.map(|b| finish(b, lower_bound))
+    let (depth, face) = best;
+    let (corners, normal) = face?;
+    let bounds = [f64::NEG_INFINITY, depth];
+    Some(Depth::Found(witness(corners, normal, bounds)))
 }
 
-fn finish(mut answer: Penetration, lower_bound: f64) -> Penetration {
-    answer.lower_bound = lower_bound.min(answer.depth);
-    answer
+/// The answer of [`penetration`].
+#[derive(Clone, Copy, Debug)]
+pub enum Depth {
+    /// No direction has a depth below that known before.
+    Known,
+    /// This is the depth.
+    Found(Penetration),
 }
 
 /// The witness points over a face: where the origin projects to, or the point of the triangle
 /// nearest to that. (A facet larger than the triangle may hold the foot outside of it.)
-fn witness(face: [CsoVertex; 3], normal: DVec3, depth: f64) -> Penetration {
+fn witness(face: [CsoVertex; 3], normal: DVec3, [lower_bound, depth]: [f64; 2]) -> Penetration {
     // Measured from the foot of the normal, so that the depth does not swamp the position.
     let foot = normal * depth;
     let nearest = Voronoi::nearest(&face.map(|v| v.w - foot));
@@ -107,7 +117,7 @@ fn witness(face: [CsoVertex; 3], normal: DVec3, depth: f64) -> Penetration {
     };
     Penetration {
         depth,
-        lower_bound: depth,
+        lower_bound,
         normal,
         on_1: combine(|vertex| vertex.on_1),
         on_2: combine(CsoVertex::on_2),

@@ -31,12 +31,7 @@ impl Hull {
     /// # Ok::<(), isa_gjk::HullError>(())
     /// ```
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
-        if points.len() < 4 {
-            return Err(HullError::TooFewPoints);
-        }
-        require_finite(points)?;
-        let (vertices, triangles) = parry3d::transformation::try_convex_hull(points)
-            .map_err(|_| HullError::BuilderFailed)?;
+        let (vertices, triangles) = surface(points)?;
         Self::from_triangles(vertices, &triangles)
     }
 
@@ -55,17 +50,18 @@ impl Hull {
         }
         require_finite(&points)?;
         require_triangles(&points, triangles)?;
-        let graph = EdgeGraph::new(points.len(), triangles)?;
+        let mut graph = EdgeGraph::new(points.len(), triangles)?;
         let (center, radius) = center_and_radius(&points, triangles)?;
         require_convex(&points, triangles, &graph, radius)?;
 
-        let mut cost = Cost::default();
-        let mut support =
-            |dir, start| climb::support(&points, &graph, radius, dir, start, &mut cost);
-        let faces = Faces::new(&points, triangles, radius, |normal, start| {
-            normal.dot(support(normal, start).0)
+        let support = |graph: &EdgeGraph, dir, start| {
+            climb::support(&points, graph, radius, dir, start, &mut Cost::default())
+        };
+        let (faces, face_of) = Faces::new(&points, triangles, radius, |normal, start| {
+            normal.dot(support(&graph, normal, start).0)
         });
-        let start = StartTable::new(points.len(), |dir, start| support(dir, start).1);
+        graph.set_faces(triangles, &face_of);
+        let start = StartTable::new(points.len(), |dir, start| support(&graph, dir, start).1);
         let hull = Self {
             points: points.into(),
             graph,
@@ -85,6 +81,21 @@ impl Hull {
         });
         deep_inside.then_some(()).ok_or(HullError::Flat)
     }
+}
+
+/// The vertices and triangles of a point cloud's hull, by parry's hull builder.
+pub(crate) fn surface(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
+    if points.len() < 4 {
+        return Err(HullError::TooFewPoints);
+    }
+    require_finite(points)?;
+    let (vertices, triangles) =
+        parry3d::transformation::try_convex_hull(points).map_err(|_| HullError::BuilderFailed)?;
+    // Of points on a line the builder keeps the ends.
+    if vertices.len() < 4 {
+        return Err(HullError::Flat);
+    }
+    Ok((vertices, triangles))
 }
 
 fn require_finite(points: &[Vec3]) -> Result<(), HullError> {

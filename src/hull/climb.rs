@@ -14,7 +14,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::graph::EdgeGraph;
+use super::graph::{EdgeGraph, LANES};
 use crate::stats::Cost;
 use crate::support::VertexId;
 use crate::tolerance::PLATEAU;
@@ -34,19 +34,19 @@ pub(super) fn support(
     let mut best = start;
     let mut value = start_value;
     let worst_neighbor;
-    (value, best, worst_neighbor) = best_neighbor(points, graph.neighbors(best), dir, value, best);
+    (value, best, worst_neighbor) = best_neighbor(points, graph.rows(best), dir, value, best);
     let mut last = start;
     while best != last {
         last = best;
         cost.climb_moves += 1;
-        (value, best, _) = best_neighbor(points, graph.neighbors(best), dir, value, best);
+        (value, best, _) = best_neighbor(points, graph.rows(best), dir, value, best);
     }
     // If a neighbour of the start lies off the plateau, or the climb left it upwards, the end
     // is a maximum.
     let off = (value - start_value).max(start_value - worst_neighbor);
     let tie = PLATEAU * radius;
     if off * off <= tie * tie * dir.length_squared()
-        && let Some(exit) = leave_plateau(points, graph, tie * dir.length(), dir, best)
+        && let Some(exit) = leave_plateau(points, graph, tie, dir, best)
     {
         cost.climb_moves += 1;
         return support(points, graph, radius, dir, exit, cost);
@@ -55,28 +55,32 @@ pub(super) fn support(
 }
 
 /// The best of a vertex, `best` with `value`, and its neighbours; and the least value of these.
-/// Selections instead of branches: which neighbour is better is not predictable.
+/// Four at a time, and selections instead of branches: neither how many neighbours there are nor
+/// which of them is better is predictable.
 #[inline(always)]
 fn best_neighbor(
     points: &[Vec3],
-    neighbors: &[u16],
+    rows: &[[u16; LANES]],
     dir: DVec3,
     mut value: f64,
     mut best: VertexId,
 ) -> (f64, VertexId, f64) {
     let mut worst = f64::INFINITY;
-    for &w in neighbors {
-        let d = dir.dot(points[w as usize].as_dvec3());
-        let better = d > value;
-        best = if better { w.into() } else { best };
-        value = if better { d } else { value };
-        worst = if d < worst { d } else { worst };
+    for row in rows {
+        let values = row.map(|w| dir.dot(points[w as usize].as_dvec3()));
+        for (&w, d) in row.iter().zip(values) {
+            let better = d > value;
+            best = if better { w.into() } else { best };
+            value = if better { d } else { value };
+            worst = if d < worst { d } else { worst };
+        }
     }
     (value, best, worst)
 }
 
 /// A vertex above the plateau around `start`, or `None` if the plateau is the maximum.
 #[cold]
+#[inline(never)]
 fn leave_plateau(
     points: &[Vec3],
     graph: &EdgeGraph,
@@ -84,6 +88,7 @@ fn leave_plateau(
     dir: DVec3,
     start: VertexId,
 ) -> Option<VertexId> {
+    let tie = tie * dir.length();
     let level = dir.dot(points[start as usize].as_dvec3());
     let mut seen = vec![false; points.len()];
     let mut stack = vec![start];

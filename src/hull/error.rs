@@ -32,7 +32,7 @@ impl fmt::Display for HullError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::TooFewPoints => write!(f, "a hull needs at least four points"),
-            Self::TooManyPoints => write!(f, "a hull may have at most 65535 vertices"),
+            Self::TooManyPoints => write!(f, "a hull may have at most 32768 vertices"),
             Self::NotFinite(i) => write!(f, "point {i} is not finite"),
             Self::Flat => write!(f, "the points span no volume"),
             Self::BadTriangle(i) => write!(f, "triangle {i} has missing or repeated vertices"),

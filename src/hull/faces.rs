@@ -5,14 +5,12 @@ use glam::{DVec3, Vec3};
 use crate::support::{FaceId, VertexId};
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS};
 
-/// Polygons and the faces around each vertex, both in compressed rows.
+/// Planes, and polygons in compressed rows.
 #[derive(Clone, Debug)]
 pub(super) struct Faces {
     planes: Box<[Plane]>,
     first: Box<[u32]>,
     vertices: Box<[u16]>,
-    first_at_vertex: Box<[u32]>,
-    at_vertex: Box<[u16]>,
 }
 
 /// A supporting plane. The normal is rounded to f32; the offset is exact for that normal.
@@ -23,16 +21,17 @@ struct Plane {
 }
 
 impl Faces {
-    /// Joins the `triangles`. `offset` gives the largest `normal · p` over the hull, searching
-    /// from a vertex.
+    /// Joins the `triangles`, and says to which face each of them went. `offset` gives the largest
+    /// `normal · p` over the hull, searching from a vertex.
     pub fn new(
         points: &[Vec3],
         triangles: &[[u32; 3]],
         radius: f64,
         mut offset: impl FnMut(DVec3, VertexId) -> f64,
-    ) -> Self {
+    ) -> (Self, Vec<u16>) {
         let regions = Regions::grow(points, triangles, radius);
-        let mut faces = Rows::default();
+        let mut first = vec![0];
+        let mut vertices = Vec::with_capacity(triangles.len() * 3);
         let mut planes = Vec::new();
         let mut face_of = vec![0_u16; triangles.len()];
         for region in regions.all {
@@ -46,17 +45,16 @@ impl Faces {
                     normal,
                     offset: offset(normal.as_dvec3(), start),
                 });
-                faces.push(&polygon.vertices);
+                vertices.extend_from_slice(&polygon.vertices);
+                first.push(vertices.len() as u32);
             }
         }
-        let at = faces_at_vertices(points.len(), triangles, &face_of);
-        Self {
+        let faces = Self {
             planes: planes.into(),
-            first: faces.first.into(),
-            vertices: faces.items.into(),
-            first_at_vertex: at.first.into(),
-            at_vertex: at.items.into(),
-        }
+            first: first.into(),
+            vertices: vertices.into(),
+        };
+        (faces, face_of)
     }
 
     pub fn len(&self) -> usize {
@@ -79,12 +77,11 @@ impl Faces {
         &self.vertices[self.first[f] as usize..self.first[f + 1] as usize]
     }
 
+    /// Of these faces the one that looks most in direction `dir`.
     #[inline]
-    pub fn most_aligned(&self, vertex: VertexId, dir: DVec3) -> FaceId {
-        let v = vertex as usize;
-        let row = self.first_at_vertex[v] as usize..self.first_at_vertex[v + 1] as usize;
+    pub fn most_aligned(&self, candidates: &[u16], dir: DVec3) -> FaceId {
         let mut best = (f64::NEG_INFINITY, 0);
-        for &face in &self.at_vertex[row] {
+        for &face in candidates {
             let aligned = self.normal(face.into()).dot(dir);
             if aligned > best.0 {
                 best = (aligned, face);
@@ -94,33 +91,7 @@ impl Faces {
     }
 
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.planes)
-            + size_of_val(&*self.first)
-            + size_of_val(&*self.vertices)
-            + size_of_val(&*self.first_at_vertex)
-            + size_of_val(&*self.at_vertex)
-    }
-}
-
-/// Compressed sparse rows while they grow.
-struct Rows {
-    first: Vec<u32>,
-    items: Vec<u16>,
-}
-
-impl Default for Rows {
-    fn default() -> Self {
-        Self {
-            first: vec![0],
-            items: Vec::new(),
-        }
-    }
-}
-
-impl Rows {
-    fn push(&mut self, row: &[u16]) {
-        self.items.extend_from_slice(row);
-        self.first.push(self.items.len() as u32);
+        size_of_val(&*self.planes) + size_of_val(&*self.first) + size_of_val(&*self.vertices)
     }
 }
 
@@ -256,25 +227,4 @@ fn boundary_loop(triangles: &[[u32; 3]], region: &[usize]) -> Option<Vec<u16>> {
         }
     }
     (polygon.len() == boundary.len() && at == start).then_some(polygon)
-}
-
-/// The faces that each vertex belongs to, also where it lies inside of a face.
-fn faces_at_vertices(count: usize, triangles: &[[u32; 3]], face_of: &[u16]) -> Rows {
-    let mut pairs: Vec<(u32, u16)> = triangles
-        .iter()
-        .zip(face_of)
-        .flat_map(|(triangle, &face)| triangle.map(|v| (v, face)))
-        .collect();
-    pairs.sort_unstable();
-    pairs.dedup();
-    let mut rows = Rows::default();
-    let mut next = 0;
-    for v in 0..count as u32 {
-        while pairs.get(next).is_some_and(|&(at, _)| at == v) {
-            rows.items.push(pairs[next].1);
-            next += 1;
-        }
-        rows.first.push(rows.items.len() as u32);
-    }
-    rows
 }

@@ -6,7 +6,9 @@ mod error;
 mod faces;
 mod graph;
 mod start;
+pub(crate) mod topology;
 
+pub(crate) use build::surface;
 pub use error::HullError;
 
 use glam::{DVec3, Vec3};
@@ -41,7 +43,7 @@ impl Hull {
         self.faces.len()
     }
 
-    /// The neighbours of a vertex on the triangulated surface.
+    /// The neighbours of a vertex on the triangulated surface; the last may be repeated.
     pub fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> + '_ {
         self.graph.neighbors(vertex).iter().map(|&v| v.into())
     }
@@ -119,7 +121,15 @@ impl Polytope for Hull {
 
     #[inline]
     fn face_at(&self, vertex: VertexId, dir: DVec3) -> FaceId {
-        self.faces.most_aligned(vertex, dir)
+        self.faces.most_aligned(self.graph.faces_at(vertex), dir)
+    }
+
+    #[inline]
+    fn face_beside(&self, ends: [VertexId; 2], dir: DVec3) -> FaceId {
+        match self.graph.faces_beside(ends) {
+            Some([a, b]) => self.faces.most_aligned(&[a as u16, b as u16], dir),
+            None => self.face_at(ends[0], dir),
+        }
     }
 
     #[inline]

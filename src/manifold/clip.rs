@@ -7,28 +7,28 @@ use glam::DVec2;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tag {
     /// A corner of the clipped polygon.
-    Corner(usize),
+    Corner(u16),
     /// A corner of the window.
-    Window(usize),
+    Window(u16),
     /// An edge of the window crossing an edge of the clipped polygon.
-    Crossing(usize, usize),
+    Crossing(u16, u16),
 }
 
 /// A corner while clipping: its place in the contact plane and the edge that leaves it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ClipVertex {
     pub at: DVec2,
+    /// From the first face to the second, along the contact normal.
+    pub distance: f64,
     pub tag: Tag,
-    /// The heights of both faces there, along the contact normal.
-    pub heights: [f64; 2],
     edge: Edge,
 }
 
 /// A side of the growing intersection, named by the corner where it starts in its polygon.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Edge {
-    Polygon(usize),
-    Window(usize),
+    Polygon(u16),
+    Window(u16),
 }
 
 impl ClipVertex {
@@ -36,15 +36,10 @@ impl ClipVertex {
     pub fn corner(at: DVec2, i: usize) -> Self {
         Self {
             at,
-            tag: Tag::Corner(i),
-            heights: [0.0; 2],
-            edge: Edge::Polygon(i),
+            distance: 0.0,
+            tag: Tag::Corner(i as u16),
+            edge: Edge::Polygon(i as u16),
         }
-    }
-
-    /// From the first face to the second, along the contact normal.
-    pub fn distance(&self) -> f64 {
-        self.heights[1] - self.heights[0]
     }
 }
 
@@ -61,66 +56,64 @@ pub struct ClipScratch {
 /// intersection in `scratch.polygon`.
 pub(super) fn intersect(scratch: &mut ClipScratch) {
     let count = scratch.window.len();
-    for i in 0..count {
+    let mut to = scratch.window[0];
+    for i in (0..count).rev() {
         let from = scratch.window[i];
-        let along = scratch.window[(i + 1) % count] - from;
+        let along = to - from;
+        to = from;
         // Height over the window's edge: positive inside.
+        let mut lowest = f64::INFINITY;
         scratch.heights.clear();
-        scratch
-            .heights
-            .extend(scratch.polygon.iter().map(|v| along.perp_dot(v.at - from)));
-        if scratch.heights.iter().all(|&h| h >= 0.0) {
-            continue;
+        scratch.heights.extend(scratch.polygon.iter().map(|v| {
+            let height = along.perp_dot(v.at - from);
+            lowest = lowest.min(height);
+            height
+        }));
+        if lowest < 0.0 {
+            scratch.clip_by_edge(i as u16, count as u16);
         }
-        clip_by_edge(
-            &scratch.polygon,
-            &scratch.heights,
-            &mut scratch.clipped,
-            (i, count),
-        );
-        std::mem::swap(&mut scratch.polygon, &mut scratch.clipped);
     }
 }
 
-/// Keeps what lies inside of the `i`-th of `count` window edges.
-fn clip_by_edge(
-    polygon: &[ClipVertex],
-    heights: &[f64],
-    clipped: &mut Vec<ClipVertex>,
-    (i, count): (usize, usize),
-) {
-    clipped.clear();
-    for k in 0..polygon.len() {
-        let next = (k + 1) % polygon.len();
-        let (vertex, h, h_next) = (polygon[k], heights[k], heights[next]);
-        if h >= 0.0 {
-            clipped.push(vertex);
+impl ClipScratch {
+    /// Keeps what lies inside of the `i`-th of `count` window edges; `heights` are those above
+    /// it.
+    fn clip_by_edge(&mut self, i: u16, count: u16) {
+        self.clipped.clear();
+        let (Some(mut vertex), Some(mut height)) = (self.polygon.last(), self.heights.last())
+        else {
+            return;
+        };
+        for (next, next_height) in self.polygon.iter().zip(&self.heights) {
+            if *height >= 0.0 {
+                self.clipped.push(*vertex);
+            }
+            if (*height < 0.0) != (*next_height < 0.0) {
+                let entering = *height < 0.0;
+                self.clipped.push(ClipVertex {
+                    at: vertex.at.lerp(next.at, height / (height - next_height)),
+                    distance: 0.0,
+                    tag: crossing(vertex.edge, i, count),
+                    edge: if entering {
+                        vertex.edge
+                    } else {
+                        Edge::Window(i)
+                    },
+                });
+            }
+            (vertex, height) = (next, next_height);
         }
-        if (h >= 0.0) == (h_next >= 0.0) {
-            continue;
-        }
-        let entering = h < 0.0;
-        let t = h / (h - h_next);
-        clipped.push(ClipVertex {
-            at: vertex.at.lerp(polygon[next].at, t),
-            tag: crossing(vertex.edge, (i, count)),
-            heights: [0.0; 2],
-            edge: if entering {
-                vertex.edge
-            } else {
-                Edge::Window(i)
-            },
-        });
+        std::mem::swap(&mut self.polygon, &mut self.clipped);
     }
 }
 
 /// What the crossing of a side with the `i`-th window edge is.
-fn crossing(side: Edge, (i, count): (usize, usize)) -> Tag {
+fn crossing(side: Edge, i: u16, count: u16) -> Tag {
     match side {
         Edge::Polygon(j) => Tag::Crossing(i, j),
         // Two window edges meet where the later one starts; the first and the last are
         // neighbours, too.
-        Edge::Window(j) if j == 0 && i + 1 == count => Tag::Window(0),
+        Edge::Window(j) if i.abs_diff(j) + 1 == count => Tag::Window(0),
         Edge::Window(j) => Tag::Window(i.max(j)),
     }
 }
@@ -173,14 +166,14 @@ mod tests {
         let mut tags: Vec<_> = corners.iter().map(|v| v.tag).collect();
         tags.sort_by_key(|tag| match tag {
             Tag::Window(i) => *i,
-            _ => usize::MAX,
+            _ => u16::MAX,
         });
         assert_eq!(tags, [0, 1, 2, 3].map(Tag::Window));
         for corner in corners {
             let Tag::Window(i) = corner.tag else {
                 unreachable!()
             };
-            assert!(corner.at.distance(SQUARE[i].into()) < 1e-15);
+            assert!(corner.at.distance(SQUARE[i as usize].into()) < 1e-15);
         }
     }
 

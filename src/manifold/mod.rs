@@ -91,17 +91,18 @@ pub fn contacts<A: Polytope, B: Polytope>(
     patch.clip(cso, scratch);
     let corners = patch.corners_within(scratch, [f64::NEG_INFINITY, max_distance]);
     let scale = cso.smaller_radius();
+    let same = SAME_POINT * scale;
     let mut first = DVec2::ZERO;
     // Over the patch the distance is linear, so a corner is deepest. A witness that is no corner
     // and no deeper (somewhere inside of two parallel faces) must not take a corner's place.
-    if !corners.iter().any(|c| c.at.length() <= SAME_POINT * scale)
+    if !corners.iter().any(|c| c.at.length_squared() <= same * same)
         && let Some(deepest) = reduce::deepest(corners)
-        && deepest.distance() <= contacts.points[0].distance + SAME_DEPTH * scale
+        && deepest.distance <= contacts.points[0].distance + SAME_DEPTH * scale
     {
         first = deepest.at;
         contacts.points[0] = patch.contact(cso, deepest);
     }
-    for corner in reduce::spread(corners, first, SAME_POINT * scale) {
+    for corner in reduce::spread(corners, first, same) {
         contacts.push(patch.contact(cso, corner));
     }
     contacts
@@ -216,10 +217,16 @@ impl Patch {
         range: [f64; 2],
     ) -> &'s [ClipVertex] {
         scratch.polygon.retain_mut(|corner| {
-            corner.heights = self.planes.map(|p| p.base + p.slope.dot(corner.at));
-            (range[0]..=range[1]).contains(&corner.distance())
+            let [h1, h2] = self.heights(corner.at);
+            corner.distance = h2 - h1;
+            (range[0]..=range[1]).contains(&corner.distance)
         });
         &scratch.polygon
+    }
+
+    /// The heights of both faces at a place in the contact plane.
+    fn heights(&self, at: DVec2) -> [f64; 2] {
+        self.planes.map(|p| p.base + p.slope.dot(at))
     }
 
     fn contact<A: Polytope, B: Polytope>(
@@ -228,19 +235,22 @@ impl Patch {
         vertex: &ClipVertex,
     ) -> ContactPoint {
         let [f1, f2] = [self.planes[0].face, self.planes[1].face];
-        let corner_1 = |i: usize| cso.shape_1.face_vertex(f1, i);
-        let corner_2 = |i: usize| cso.shape_2.face_vertex(f2, i);
+        let corner_1 = |i: u16| cso.shape_1.face_vertex(f1, i.into());
+        let corner_2 = |i: u16| cso.shape_2.face_vertex(f2, i.into());
         let features = match vertex.tag {
             Tag::Corner(i) => [Feature::Face(f1), Feature::Vertex(corner_2(i))],
             Tag::Window(i) => [Feature::Vertex(corner_1(i)), Feature::Face(f2)],
-            Tag::Crossing(i, j) => [edge_of(cso.shape_1, f1, i), edge_of(cso.shape_2, f2, j)],
+            Tag::Crossing(i, j) => [
+                edge_of(cso.shape_1, f1, i.into()),
+                edge_of(cso.shape_2, f2, j.into()),
+            ],
         };
         let foot = self.origin + self.axes[0] * vertex.at.x + self.axes[1] * vertex.at.y;
-        let [h1, h2] = vertex.heights;
+        let [h1, h2] = self.heights(vertex.at);
         ContactPoint {
             on_1: foot + self.normal * h1,
             on_2: foot + self.normal * h2,
-            distance: vertex.distance(),
+            distance: vertex.distance,
             features,
         }
     }
@@ -252,12 +262,10 @@ fn facing(shape: &impl Polytope, feature: Feature, outward: DVec3) -> FaceId {
     match feature {
         Feature::Face(face) => face,
         Feature::Vertex(vertex) => shape.face_at(vertex, outward),
-        Feature::Edge(edge) => {
-            let ends = shape.edge(edge).unwrap_or([0, 0]);
-            let [a, b] = ends.map(|v| shape.face_at(v, outward));
-            let aligned = |f| shape.face_normal(f).dot(outward);
-            if aligned(a) >= aligned(b) { a } else { b }
-        }
+        Feature::Edge(edge) => match shape.edge(edge) {
+            Some(ends) => shape.face_beside(ends, outward),
+            None => shape.face_at(0, outward),
+        },
     }
 }
 

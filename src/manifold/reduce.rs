@@ -9,7 +9,7 @@ use super::clip::ClipVertex;
 pub(super) fn deepest(corners: &[ClipVertex]) -> Option<&ClipVertex> {
     corners
         .iter()
-        .min_by(|a, b| a.distance().total_cmp(&b.distance()))
+        .min_by(|a, b| a.distance.total_cmp(&b.distance))
 }
 
 /// Corners that, with the contact at `first`, span a large area: the farthest from it, the
@@ -21,32 +21,33 @@ pub(super) fn spread(
     same: f64,
 ) -> impl Iterator<Item = &ClipVertex> {
     let mut chosen: [Option<&ClipVertex>; MAX_POINTS - 1] = [None; MAX_POINTS - 1];
-    if let Some(far) = best(corners, same, |p| p.distance(first)) {
+    if let Some(far) = best(corners, same * same, |p| p.distance_squared(first)) {
         let line = far.at - first;
-        let along = line.normalize_or_zero();
-        let left = best(corners, same, |p| along.perp_dot(p - first));
-        let right = best(corners, same, |p| -along.perp_dot(p - first));
+        // Areas over the line are heights times its length.
+        let least = same * line.length();
+        let left = best(corners, least, |p| line.perp_dot(p - first));
+        let right = best(corners, least, |p| -line.perp_dot(p - first));
         chosen = [Some(far), left, right];
-        // A patch on one side of the line: the last corner is farthest beyond the triangle.
+        // A patch on one side of the line: the last corner adds most area to the triangle.
         if let (Some(side), None) | (None, Some(side)) = (left, right) {
-            let third = best(corners, same, |p| beyond(p - first, line, side.at - first));
+            let third = best(corners, least, |p| {
+                added_area(p - first, line, side.at - first)
+            });
             chosen = [Some(far), Some(side), third];
         }
     }
     chosen.into_iter().flatten()
 }
 
-/// How far `p` lies outside of the triangle of the origin, `a` and `b`, beyond its two edges at
-/// `b`.
-fn beyond(p: DVec2, a: DVec2, b: DVec2) -> f64 {
-    let outside = |from: DVec2, to: DVec2| {
-        let edge = (to - from).normalize_or_zero();
-        -edge.perp_dot(p - from)
-    };
+/// Twice the area that `p` adds to the triangle of the origin, `a` and `b` beyond one of its two
+/// edges at `b`.
+fn added_area(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+    let beyond_ab = -(b - a).perp_dot(p - a);
+    let beyond_bo = b.perp_dot(p);
     if a.perp_dot(b) > 0.0 {
-        outside(a, b).max(outside(b, DVec2::ZERO))
+        beyond_ab.max(beyond_bo)
     } else {
-        outside(b, a).max(outside(DVec2::ZERO, b))
+        -beyond_ab.min(beyond_bo)
     }
 }
 

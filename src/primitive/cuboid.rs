@@ -123,6 +123,19 @@ impl Polytope for CuboidPolytope {
     }
 
     #[inline]
+    fn face_beside(&self, ends: [VertexId; 2], dir: DVec3) -> FaceId {
+        // Of the three faces at an end, the edge has those that do not cut across it.
+        let along = (ends[0] ^ ends[1]).trailing_zeros().min(2);
+        let mut across = dir;
+        across[along as usize] = if ends[0] >> along & 1 == 1 {
+            f64::NEG_INFINITY
+        } else {
+            f64::INFINITY
+        };
+        self.face_at(ends[0], across)
+    }
+
+    #[inline]
     fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32> {
         let (low, high) = (from.min(to), from.max(to));
         (high < 8 && (low ^ high).is_power_of_two()).then_some(low << 3 | high)

@@ -110,6 +110,11 @@ impl Polytope for TrianglePolytope {
     }
 
     #[inline]
+    fn face_beside(&self, ends: [VertexId; 2], dir: DVec3) -> FaceId {
+        self.face_at(ends[0], dir)
+    }
+
+    #[inline]
     fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32> {
         let (low, high) = (from.min(to), from.max(to));
         (low < high && high < 3).then_some(low << 2 | high)

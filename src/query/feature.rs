@@ -39,10 +39,34 @@ pub(super) enum Verdict {
     Apart(SeparatingAxis),
     /// The facet's signed distance is that of the shapes.
     Certified(Proximity),
-    /// Not proved. Points of the Minkowski difference around the facet, to go on from.
-    Unproved(Seeds),
+    /// The origin projects beyond this side of the facet: another one is nearest by now.
+    Beyond(Side),
+    /// The shapes overlap, perhaps less elsewhere. Points of the Minkowski difference around the
+    /// facet, to go on from, and the answer if the facet turns out to be the nearest.
+    Unproved(Seeds, Proximity),
     /// These features do not span a facet.
     NoPlane,
+}
+
+/// A side of a facet. In frame 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Side {
+    /// Its end points.
+    pub ends: [CsoVertex; 2],
+    /// The facet's normal, from shape 1 to shape 2.
+    pub normal: DVec3,
+    /// The unit direction in the facet's plane out of the facet.
+    pub outward: DVec3,
+}
+
+impl Side {
+    fn new(from: CsoVertex, to: CsoVertex, normal: DVec3) -> Self {
+        Self {
+            ends: [from, to],
+            normal,
+            outward: (to.w - from.w).cross(normal).normalize_or_zero(),
+        }
+    }
 }
 
 /// A few points of the Minkowski difference.
@@ -57,7 +81,7 @@ impl Seeds {
         &self.points[..self.len]
     }
 
-    fn push(&mut self, point: CsoVertex) {
+    pub fn push(&mut self, point: CsoVertex) {
         if self.len < self.points.len() {
             self.points[self.len] = point;
             self.len += 1;
@@ -119,18 +143,16 @@ fn vertex_of(shape: &impl Polytope, feature: Feature) -> VertexId {
 }
 
 /// The features that the vertices of a simplex span. `normal` in frame 1, from shape 1 to 2.
-pub(super) fn of_simplex<A: Polytope, B: Polytope>(
+pub(super) fn of_simplex<'v, A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
-    simplex: &[CsoVertex],
+    simplex: impl Iterator<Item = &'v CsoVertex> + Clone,
     normal: DVec3,
 ) -> [Feature; 2] {
+    let ids_2 = simplex.clone().map(|v| v.ids[1]);
+    let outward_2 = -cso.pose.direction_to_2(normal);
     [
-        spanned(cso.shape_1, simplex.iter().map(|v| v.ids[0]), normal),
-        spanned(
-            cso.shape_2,
-            simplex.iter().map(|v| v.ids[1]),
-            -cso.pose.direction_to_2(normal),
-        ),
+        spanned(cso.shape_1, simplex.map(|v| v.ids[0]), normal),
+        spanned(cso.shape_2, ids_2, outward_2),
     ]
 }
 
@@ -188,36 +210,42 @@ impl Test {
         }
         let count = p.face_len(face);
         let corner = |i: usize| p.vertex(p.face_vertex(face, i)) - on_q;
-        let apex = p.center() - q_pose.point_to_1(q.center());
-        let proved = if signed_distance >= 0.0 {
-            projects_inside(count, corner, normal, self.tolerance)
-        } else {
-            let depth = -signed_distance - self.tolerance;
-            pyramid_holds_ball(count, corner, apex, depth)
+        let vertex = |i: usize| {
+            let id = p.face_vertex(face, i);
+            let on_1 = p.vertex(id);
+            CsoVertex {
+                w: on_1 - on_q,
+                on_1,
+                ids: [id, q_id],
+            }
         };
-        if proved {
-            return Verdict::Certified(Proximity {
-                signed_distance,
-                normal,
-                on_1: on_q - normal * signed_distance,
-                on_2: on_q,
-                features: [Feature::Face(face), Feature::Vertex(q_id)],
-            });
+        let certified = Proximity {
+            signed_distance,
+            normal,
+            on_1: on_q - normal * signed_distance,
+            on_2: on_q,
+            features: [Feature::Face(face), Feature::Vertex(q_id)],
+        };
+        if let Some(i) = side_beyond(count, corner, normal, self.tolerance) {
+            return Verdict::Beyond(Side::new(vertex(i), vertex((i + 1) % count), normal));
+        }
+        let apex = p.center() - q_pose.point_to_1(q.center());
+        let depth = -signed_distance - self.tolerance;
+        if signed_distance >= 0.0 || pyramid_holds_ball(count, corner, apex, depth) {
+            return Verdict::Certified(certified);
         }
         let mut seeds = Seeds::default();
         // Corners spread around the face, whatever their number.
         let spread = count.min(4);
         for i in 0..spread {
-            let id = p.face_vertex(face, i * count / spread);
-            let on_p = p.vertex(id);
-            seeds.push(CsoVertex {
-                w: on_p - on_q,
-                on_1: on_p,
-                ids: [id, q_id],
-            });
+            seeds.push(vertex(i * count / spread));
         }
-        seeds.push(center_seed(apex, p.center(), seeds.points[0].ids));
-        Verdict::Unproved(seeds)
+        seeds.push(CsoVertex {
+            w: apex,
+            on_1: p.center(),
+            ids: seeds.points[0].ids,
+        });
+        Verdict::Unproved(seeds, certified)
     }
 
     /// Two edges that cross; everything in frame 1.
@@ -256,44 +284,46 @@ impl Test {
                 ids: extreme.ids,
             });
         }
-        let corners = [
-            offset,
-            offset + along_1,
-            offset + along_1 - along_2,
-            offset - along_2,
-        ];
-        let [s, t] = crossing(offset, along_1, along_2);
-        let supports = -normal.dot(offset) - signed_distance <= self.tolerance;
-        let proved = supports
-            && if signed_distance >= 0.0 {
-                (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t)
-            } else {
-                let depth = -signed_distance - self.tolerance;
-                // `along_1` then `-along_2` turn clockwise about `cross`.
-                let corner = |i: usize| corners[if outward < 0.0 { i } else { 3 - i }];
-                pyramid_holds_ball(4, corner, center, depth)
-            };
-        if proved {
-            let on_1 = a0 + along_1 * s;
-            return Verdict::Certified(Proximity {
-                signed_distance,
-                normal,
+        // `along_1` then `-along_2` turn clockwise about `cross`.
+        let turn = if outward < 0.0 {
+            [0, 1, 2, 3]
+        } else {
+            [3, 2, 1, 0]
+        };
+        let vertices = turn.map(|i| {
+            let (a, b) = ([0, 1, 1, 0][i], [0, 0, 1, 1][i]);
+            let on_1 = [a0, a1][a];
+            CsoVertex {
+                w: on_1 - [b0, b1][b],
                 on_1,
-                on_2: on_1 + normal * signed_distance,
-                features,
-            });
+                ids: [ends_1[a], ends_2[b]],
+            }
+        });
+        let corner = |i: usize| vertices[i].w;
+        if let Some(i) = side_beyond(4, corner, normal, self.tolerance) {
+            return Verdict::Beyond(Side::new(vertices[i], vertices[(i + 1) % 4], normal));
+        }
+        if -normal.dot(offset) - signed_distance > self.tolerance {
+            // Another vertex is extreme by now; beyond some side of the edges, too.
+            return Verdict::Beyond(Side::new(extreme, vertices[0], normal));
+        }
+        let [s, _] = crossing(offset, along_1, along_2);
+        let on_1 = a0 + along_1 * s;
+        let proximity = Proximity {
+            signed_distance,
+            normal,
+            on_1,
+            on_2: on_1 + normal * signed_distance,
+            features,
+        };
+        let depth = -signed_distance - self.tolerance;
+        if signed_distance >= 0.0 || pyramid_holds_ball(4, corner, center, depth) {
+            return Verdict::Certified(proximity);
         }
         let mut seeds = Seeds::default();
-        for (i, &w) in corners.iter().enumerate() {
-            let (a, b) = ([0, 1, 1, 0][i], [0, 0, 1, 1][i]);
-            seeds.push(CsoVertex {
-                w,
-                on_1: [a0, a1][a],
-                ids: [ends_1[a], ends_2[b]],
-            });
-        }
-        seeds.push(center_seed(center, cso.shape_1.center(), extreme.ids));
-        Verdict::Unproved(seeds)
+        vertices.iter().for_each(|vertex| seeds.push(*vertex));
+        seeds.push(center_seed(cso, extreme.ids));
+        Verdict::Unproved(seeds, proximity)
     }
 }
 
@@ -345,26 +375,43 @@ fn edge_witnesses<A: Polytope, B: Polytope>(
 }
 
 /// The centre of the Minkowski difference: inside, so that it never is a corner of the answer.
-fn center_seed(w: DVec3, on_1: DVec3, ids: [VertexId; 2]) -> CsoVertex {
-    CsoVertex { w, on_1, ids }
+/// `ids` only tell climbs where to start.
+pub(super) fn center_seed<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    ids: [VertexId; 2],
+) -> CsoVertex {
+    CsoVertex {
+        w: cso.center(),
+        on_1: cso.shape_1.center(),
+        ids,
+    }
 }
 
-/// Whether the origin projects along `normal` into a polygon that turns counter-clockwise about
-/// it, up to `tolerance`.
-fn projects_inside(
+/// The side of a polygon, counter-clockwise about `normal`, beyond which the origin projects
+/// farthest, as the index of its first corner; `None` if it projects inside, up to `tolerance`.
+fn side_beyond(
     count: usize,
     corner: impl Fn(usize) -> DVec3,
     normal: DVec3,
     tolerance: f64,
-) -> bool {
+) -> Option<usize> {
+    let mut beyond = None;
+    let mut farthest = tolerance * tolerance;
     let mut from = corner(count - 1);
-    (0..count).all(|i| {
+    for i in 0..count {
         let to = corner(i);
         let inward = normal.cross(to - from);
         let height = -inward.dot(from);
         from = to;
-        height >= 0.0 || height * height <= tolerance * tolerance * inward.length_squared()
-    })
+        if height < 0.0 {
+            let squared = height * height / inward.length_squared();
+            if squared > farthest {
+                farthest = squared;
+                beyond = Some((i + count - 1) % count);
+            }
+        }
+    }
+    beyond
 }
 
 /// Whether the origin is at least `depth` inside of all side planes of the pyramid over a
@@ -395,24 +442,37 @@ impl Verdict {
                 separation: apart.separation,
                 ids: [apart.ids[1], apart.ids[0]],
             }),
-            Self::Certified(p) => Self::Certified(Proximity {
-                signed_distance: p.signed_distance,
-                normal: -pose.direction_to_1(p.normal),
-                on_1: pose.point_to_1(p.on_2),
-                on_2: pose.point_to_1(p.on_1),
-                features: [p.features[1], p.features[0]],
+            Self::Certified(proximity) => Self::Certified(mirrored_proximity(&proximity, pose)),
+            Self::Beyond(side) => Self::Beyond(Side {
+                ends: side.ends.map(|vertex| mirrored(&vertex, pose)),
+                normal: -pose.direction_to_1(side.normal),
+                outward: -pose.direction_to_1(side.outward),
             }),
-            Self::Unproved(mut seeds) => {
+            Self::Unproved(mut seeds, candidate) => {
                 for seed in &mut seeds.points[..seeds.len] {
-                    *seed = CsoVertex {
-                        w: -pose.direction_to_1(seed.w),
-                        on_1: pose.point_to_1(seed.on_2()),
-                        ids: [seed.ids[1], seed.ids[0]],
-                    };
+                    *seed = mirrored(seed, pose);
                 }
-                Self::Unproved(seeds)
+                Self::Unproved(seeds, mirrored_proximity(&candidate, pose))
             }
             Self::NoPlane => Self::NoPlane,
         }
+    }
+}
+
+fn mirrored(vertex: &CsoVertex, pose: &RelativePose) -> CsoVertex {
+    CsoVertex {
+        w: -pose.direction_to_1(vertex.w),
+        on_1: pose.point_to_1(vertex.on_2()),
+        ids: [vertex.ids[1], vertex.ids[0]],
+    }
+}
+
+fn mirrored_proximity(p: &Proximity, pose: &RelativePose) -> Proximity {
+    Proximity {
+        signed_distance: p.signed_distance,
+        normal: -pose.direction_to_1(p.normal),
+        on_1: pose.point_to_1(p.on_2),
+        on_2: pose.point_to_1(p.on_1),
+        features: [p.features[1], p.features[0]],
     }
 }

@@ -15,13 +15,20 @@ pub use feature::{Feature, vertices};
 
 use glam::DVec3;
 
-use crate::epa::{self, EpaScratch, Penetration};
+use crate::epa::{self, Depth, EpaScratch, Penetration};
 use crate::gjk::{self, Closest, Outcome, SeparatingAxis};
 use crate::simplex::Voronoi;
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 use crate::tolerance::DEPTH_GAP;
-use feature::Verdict;
+use feature::{Seeds, Side, Verdict};
+
+/// Tangent of the angle by which a direction is turned towards where the next facet is to be
+/// expected. Hulls of a hundred vertices have dihedral angles around it; any value is correct.
+const TILT: f64 = 0.2;
+
+/// The stages of a query that goes on from a previous frame.
+const WARM: [Stage; 2] = [Stage::WarmGjk, Stage::WarmEpa];
 
 /// What is remembered of a pair from one frame to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,7 +86,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                 let axis = self.center_line();
                 let start = self.cso.start(axis);
                 let vertex = self.cso.support(axis, start, self.cost);
-                self.from_vertex(vertex, [Stage::ColdGjk, Stage::ColdEpa])
+                self.from_vertices(&[vertex], [Stage::ColdGjk, Stage::ColdEpa])
             }
             Memory::Axis(axis, ids) => {
                 match gjk::test_axis(
@@ -90,7 +97,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                     self.cost,
                 ) {
                     Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-                    Err(vertex) => self.from_vertex(vertex, [Stage::WarmGjk, Stage::WarmEpa]),
+                    Err(vertex) => self.from_failed_axis(axis, vertex),
                 }
             }
             Memory::Contact(normal, features) => self.from_contact(normal, features),
@@ -109,17 +116,51 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         ]
     }
 
-    /// GJK from a vertex of the Minkowski difference, and EPA if the shapes overlap.
-    fn from_vertex(&mut self, vertex: CsoVertex, stages: [Stage; 2]) -> Option<(Answer, Stage)> {
-        match gjk::distance::<Voronoi, _, _>(self.cso, vertex, self.max_distance, self.cost) {
+    /// The axis separates no more, but mostly because the shapes turned a little: tilted away from
+    /// where `vertex` comes too near, it often does.
+    fn from_failed_axis(&mut self, axis: DVec3, vertex: CsoVertex) -> Option<(Answer, Stage)> {
+        let sideways = vertex.w - axis * axis.dot(vertex.w);
+        let tilted = axis - sideways.normalize_or_zero() * TILT;
+        let tilted = tilted.normalize();
+        match gjk::test_axis(self.cso, tilted, vertex.ids, self.max_distance, self.cost) {
+            Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
+            Err(second) => self.from_vertices(&[vertex, second], WARM),
+        }
+    }
+
+    /// From the facet beyond a side of the previous one. From the side alone GJK's first direction
+    /// would be sideways, far from where the shapes are near.
+    fn from_side(&mut self, side: &Side) -> Option<(Answer, Stage)> {
+        let [from, to] = side.ends;
+        let tilted = (side.normal + side.outward * TILT).normalize();
+        match gjk::test_axis(self.cso, tilted, from.ids, self.max_distance, self.cost) {
+            Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
+            Err(beyond) => self.from_vertices(&[from, to, beyond], WARM),
+        }
+    }
+
+    /// GJK from vertices of the Minkowski difference, and EPA if the shapes overlap.
+    fn from_vertices(
+        &mut self,
+        start: &[CsoVertex],
+        stages: [Stage; 2],
+    ) -> Option<(Answer, Stage)> {
+        match gjk::distance::<Voronoi, _, _>(self.cso, start, self.max_distance, self.cost) {
             Outcome::Apart(apart) => Some((Answer::Apart(apart), stages[0])),
             Outcome::Near(closest) => Some((self.near(&closest), stages[0])),
             Outcome::Overlap(simplex) => {
-                let depth =
-                    epa::penetration(self.cso, simplex.vertices(), self.scratch, self.cost)?;
-                Some((self.overlapping(&depth), stages[1]))
+                let mut seeds = Seeds::default();
+                simplex.vertices().for_each(|vertex| seeds.push(*vertex));
+                match self.depth(seeds.as_slice(), f64::INFINITY)? {
+                    Depth::Found(depth) => Some((self.overlapping(&depth), stages[1])),
+                    Depth::Known => None,
+                }
             }
         }
+    }
+
+    fn depth(&mut self, seeds: &[CsoVertex], known: f64) -> Option<Depth> {
+        epa::penetration(self.cso, seeds, known, self.scratch, self.cost)
     }
 
     fn from_contact(&mut self, normal: DVec3, features: [Feature; 2]) -> Option<(Answer, Stage)> {
@@ -127,19 +168,30 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         match feature::certify(self.cso, features, self.max_distance, tolerance, self.cost) {
             Verdict::Apart(apart) => Some((Answer::Apart(apart), Stage::Axis)),
             Verdict::Certified(proximity) => Some((Answer::Near(proximity), Stage::Feature)),
-            Verdict::Unproved(seeds) => self.from_seeds(seeds.as_slice()),
+            Verdict::Beyond(side) => self.from_side(&side),
+            Verdict::Unproved(seeds, candidate) => {
+                self.from_seeds(seeds.as_slice(), Some(candidate))
+            }
             Verdict::NoPlane => {
                 let start = feature::vertices(self.cso, features);
                 let vertex = self.cso.support(normal, start, self.cost);
-                self.from_vertex(vertex, [Stage::WarmGjk, Stage::WarmEpa])
+                self.from_vertices(&[vertex], WARM)
             }
         }
     }
 
-    /// The depth, grown from points near the previous contact; where it finds the shapes
-    /// separate, GJK finds how far.
-    fn from_seeds(&mut self, seeds: &[CsoVertex]) -> Option<(Answer, Stage)> {
-        let depth = epa::penetration(self.cso, seeds, self.scratch, self.cost)?;
+    /// The depth, grown from points near the previous contact, if it is not that of the
+    /// `candidate`; where it finds the shapes separate, GJK finds how far.
+    fn from_seeds(
+        &mut self,
+        seeds: &[CsoVertex],
+        candidate: Option<Proximity>,
+    ) -> Option<(Answer, Stage)> {
+        let known = candidate.map_or(f64::INFINITY, |c| -c.signed_distance);
+        let depth = match (self.depth(seeds, known)?, candidate) {
+            (Depth::Found(depth), _) => depth,
+            (Depth::Known, candidate) => return Some((Answer::Near(candidate?), Stage::WarmEpa)),
+        };
         let separation = -depth.depth;
         let ids = depth.face[0].ids;
         if separation > self.max_distance {
@@ -151,8 +203,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             return Some((Answer::Apart(axis), Stage::WarmEpa));
         }
         if separation > 0.0 {
-            let vertex = self.cso.support(depth.normal, ids, self.cost);
-            return self.from_vertex(vertex, [Stage::WarmGjk, Stage::WarmEpa]);
+            return self.from_vertices(&depth.face, WARM);
         }
         Some((self.overlapping(&depth), Stage::WarmEpa))
     }
@@ -168,7 +219,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     }
 
     fn overlapping(&self, depth: &Penetration) -> Answer {
-        let features = feature::of_simplex(self.cso, &depth.face, depth.normal);
+        let features = feature::of_simplex(self.cso, depth.face.iter(), depth.normal);
         let [on_1, on_2] = feature::witnesses(self.cso, features, depth);
         Answer::Near(Proximity {
             signed_distance: -depth.depth,

@@ -8,3 +8,4 @@ pub mod memory;
 pub mod oracle;
 pub mod pose;
 pub mod report;
+pub mod zoo;

@@ -16,14 +16,29 @@ const COIN_HALF_HEIGHT: Real = 0.03;
 /// One bouncing hull for so many that sleep.
 const SLEEPERS_PER_BOUNCER: usize = 100;
 
-/// Puts the bodies of `scene` and what holds them into an empty world.
-pub fn fill(world: &mut World, scene: Scene, params: &SceneParams) -> Result<(), String> {
+/// Puts the bodies of `scene` and what holds them into an empty world, with colliders that are
+/// [`isa_gjk::HullShape`]s where the hulls are plain if `hull_shape` is set.
+pub fn fill(
+    world: &mut World,
+    scene: Scene,
+    params: &SceneParams,
+    hull_shape: bool,
+) -> Result<(), String> {
     let mut random = Rand32::new(params.seed);
     let shapes = shapes(scene, params, &mut random)?;
+    let colliders = if hull_shape {
+        shapes
+            .iter()
+            .map(hulls::prepared)
+            .collect::<Result<_, _>>()?
+    } else {
+        shapes.clone()
+    };
     let mut filler = Filler {
         world,
         reach: shapes.iter().map(reach).fold(0.0, Real::max),
         shapes,
+        colliders,
         random,
         bodies: params.bodies as usize,
         can_sleep: scene == Scene::Asleep,
@@ -104,7 +119,10 @@ fn reach(shape: &SharedShape) -> Real {
 
 struct Filler<'a> {
     world: &'a mut World,
+    /// What the bodies are placed by.
     shapes: Vec<SharedShape>,
+    /// The same shapes as they come into the world.
+    colliders: Vec<SharedShape>,
     /// The largest reach of a shape.
     reach: Real,
     random: Rand32,
@@ -228,7 +246,8 @@ impl Filler<'_> {
         let body = RigidBodyBuilder::dynamic()
             .pose(pose)
             .can_sleep(self.can_sleep);
-        let collider = ColliderBuilder::new(self.shape(i).clone());
+        let shape = self.colliders[i % self.colliders.len()].clone();
+        let collider = ColliderBuilder::new(shape);
         self.world.physics.insert(body, collider).1
     }
 

@@ -166,6 +166,8 @@ pub struct SceneParams {
     pub seed: u64,
     /// Whether rapier may keep the contacts of pairs that hardly moved.
     pub recycling: bool,
+    /// Whether worlds with our dispatcher hold [`isa_gjk::HullShape`]s instead of plain hulls.
+    pub hull_shape: bool,
 }
 
 /// Builds `scene`; without a dispatcher, rapier's own narrow phase answers.
@@ -174,8 +176,9 @@ pub fn build(
     params: &SceneParams,
     dispatcher: Option<IsaGjkDispatcher>,
 ) -> Result<World, String> {
+    let hull_shape = params.hull_shape && dispatcher.is_some();
     let mut world = World::new(dispatcher);
     world.physics.integration_parameters.contact_recycling = params.recycling;
-    build::fill(&mut world, scene, params)?;
+    build::fill(&mut world, scene, params, hull_shape)?;
     Ok(world)
 }

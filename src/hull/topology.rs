@@ -9,18 +9,19 @@ use std::cmp::Ordering;
 use glam::{DVec2, DVec3};
 use parry3d::shape::ConvexPolyhedron;
 
-use crate::hull::{Hull, HullError};
+use super::{Hull, HullError};
 
 /// The hull of a polyhedron, with its vertex ids; with new ones where its surface is not a
 /// convex triangulation of all of its points.
-pub(super) fn hull_of(polyhedron: &ConvexPolyhedron) -> Result<Hull, HullError> {
+pub(crate) fn hull_of(polyhedron: &ConvexPolyhedron) -> Result<Hull, HullError> {
     let points = polyhedron.points();
     triangles(polyhedron)
         .and_then(|triangles| Hull::from_triangles(points.to_vec(), &triangles).ok())
         .map_or_else(|| Hull::from_points(points), Ok)
 }
 
-fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
+/// The triangles of a polyhedron, counter-clockwise from outside; `None` if they cannot be told.
+pub(crate) fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
     let points = polyhedron.points();
     if points.iter().any(|p| !p.is_finite()) {
         return None;

@@ -1,0 +1,117 @@
+//! Support queries and point projections.
+
+use glam::DVec3;
+use parry3d::math::{Pose, Vector};
+use parry3d::query::{PointProjection, PointQuery};
+use parry3d::shape::{FeatureId, SupportMap};
+
+use super::HullShape;
+use crate::gjk::{self, Outcome};
+use crate::pose::RelativePose;
+use crate::simplex::Voronoi;
+use crate::stats::Cost;
+use crate::support::{Cso, FaceId, Polytope, Support, VertexId};
+
+impl HullShape {
+    /// The vertex that is extreme in direction `dir`, of any length.
+    #[inline]
+    pub(super) fn support_vertex(&self, dir: DVec3) -> VertexId {
+        let hull = self.hull();
+        hull.support(dir, hull.start(dir), &mut Cost::default()).1
+    }
+
+    /// The position of the vertex that is extreme in direction `dir`.
+    #[inline]
+    pub(super) fn support_toward(&self, dir: Vector) -> Vector {
+        self.hull().points()[self.support_vertex(dir.as_dvec3()) as usize]
+    }
+
+    /// The face whose plane a point is the farthest above, and how far.
+    fn nearest_plane(&self, point: DVec3) -> (FaceId, f64) {
+        let hull = self.hull();
+        let height = |f| hull.face_normal(f).dot(point) - hull.face_offset(f);
+        (0..hull.face_count() as FaceId)
+            .map(|f| (f, height(f)))
+            .fold((0, f64::NEG_INFINITY), |best, other| {
+                if other.1 > best.1 { other } else { best }
+            })
+    }
+
+    /// A point's projection: on the boundary, or on itself if it is inside of a `solid` hull.
+    /// And the feature that it lies on, if it is on the boundary.
+    fn project(&self, point: Vector, solid: bool) -> (PointProjection, FeatureId) {
+        let Some(pose) = RelativePose::new(&Pose::from_translation(point)) else {
+            return (PointProjection::new(false, point), FeatureId::Unknown);
+        };
+        let cso = Cso {
+            shape_1: self.hull(),
+            shape_2: &Point,
+            pose: &pose,
+        };
+        let cost = &mut Cost::default();
+        let toward = point.as_dvec3() - cso.shape_1.center();
+        let first = cso.support(toward, cso.start(toward), cost);
+        match gjk::distance::<Voronoi, _, _>(&cso, &[first], f64::INFINITY, cost) {
+            Outcome::Near(closest) => (
+                PointProjection::new(false, closest.on_1.as_vec3()),
+                self.feature_toward(closest.normal),
+            ),
+            Outcome::Overlap(_) if solid => (PointProjection::new(true, point), FeatureId::Unknown),
+            // Never apart: no distance is farther than infinity.
+            Outcome::Overlap(_) | Outcome::Apart(_) => {
+                let (on_face, face) = self.project_to_face(point.as_dvec3());
+                (on_face, FeatureId::Face(face))
+            }
+        }
+    }
+
+    /// The projection of a point inside on the boundary: the nearest plane is that of the
+    /// nearest face.
+    fn project_to_face(&self, point: DVec3) -> (PointProjection, FaceId) {
+        let (face, height) = self.nearest_plane(point);
+        let on_face = point - height * self.hull().face_normal(face);
+        (PointProjection::new(height <= 0.0, on_face.as_vec3()), face)
+    }
+}
+
+/// The origin as a shape.
+struct Point;
+
+impl Support for Point {
+    fn support(&self, _: DVec3, _: VertexId, _: &mut Cost) -> (DVec3, VertexId) {
+        (DVec3::ZERO, 0)
+    }
+
+    fn start(&self, _: DVec3) -> VertexId {
+        0
+    }
+
+    fn valid_start(&self, _: VertexId) -> VertexId {
+        0
+    }
+
+    fn center(&self) -> DVec3 {
+        DVec3::ZERO
+    }
+
+    fn radius(&self) -> f64 {
+        0.0
+    }
+}
+
+impl SupportMap for HullShape {
+    #[inline]
+    fn local_support_point(&self, dir: Vector) -> Vector {
+        self.support_toward(dir)
+    }
+}
+
+impl PointQuery for HullShape {
+    fn project_local_point(&self, point: Vector, solid: bool) -> PointProjection {
+        self.project(point, solid).0
+    }
+
+    fn project_local_point_and_get_feature(&self, point: Vector) -> (PointProjection, FeatureId) {
+        self.project(point, false)
+    }
+}
