@@ -15,9 +15,15 @@ pub struct RelativePose {
 impl RelativePose {
     /// From an f32 pose of shape 2 in frame 1; its quaternion is normalised here, in f64.
     ///
-    /// Of a pose that is not [valid](Self::is_valid) something that is not finite.
+    /// `None` if the pose is not [valid](Self::is_valid).
+    pub fn new(pos12: &Pose) -> Option<Self> {
+        Self::is_valid(pos12).then(|| Self::from_valid(pos12))
+    }
+
+    /// From a pose that is [valid](Self::is_valid). Built in place: copying it out of an `Option`
+    /// would cost a stall of the store buffer in every query.
     #[inline(always)]
-    pub fn new(pos12: &Pose) -> Self {
+    pub(crate) fn from_valid(pos12: &Pose) -> Self {
         let q = pos12.rotation;
         let q = DQuat::from_xyzw(q.x.into(), q.y.into(), q.z.into(), q.w.into());
         let excess = q.length_squared() - 1.0;

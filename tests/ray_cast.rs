@@ -84,7 +84,7 @@ impl<'a> Cast<'a> {
         };
         let mut cost = Cost::default();
         let start = cso.support(DVec3::X, cso.start(DVec3::X), &mut cost);
-        match gjk::distance::<Voronoi, _, _>(&cso, start, f64::INFINITY, &mut cost) {
+        match gjk::distance::<Voronoi, _, _>(&cso, &[start], f64::INFINITY, &mut cost) {
             Outcome::Near(near) => near.distance,
             Outcome::Overlap(_) => 0.0,
             Outcome::Apart(_) => unreachable!("nothing is beyond infinity"),

@@ -107,7 +107,7 @@ fn closest<A: Support, B: Support>(a: &A, b: &B, pose: &RelativePose) -> Closest
     };
     let mut cost = Cost::default();
     let start = cso.support(DVec3::X, cso.start(DVec3::X), &mut cost);
-    match gjk::distance::<Voronoi, _, _>(&cso, start, f64::INFINITY, &mut cost) {
+    match gjk::distance::<Voronoi, _, _>(&cso, &[start], f64::INFINITY, &mut cost) {
         Outcome::Near(near) => {
             let gap = near.distance - near.lower_bound;
             assert!(gap <= 1.0e-8 * cso.size(), "uncertain by {gap:e}");
@@ -325,11 +325,13 @@ struct Worst {
 
 fn depth<A: Support, B: Support>(cso: &Cso<'_, A, B>, cost: &mut Cost) -> Option<Penetration> {
     let start = cso.support(DVec3::X, cso.start(DVec3::X), cost);
-    let Outcome::Overlap(simplex) = gjk::distance::<Voronoi, _, _>(cso, start, f64::INFINITY, cost)
+    let Outcome::Overlap(simplex) =
+        gjk::distance::<Voronoi, _, _>(cso, &[start], f64::INFINITY, cost)
     else {
         return None;
     };
-    let depth = epa::penetration(cso, simplex.vertices(), &mut EpaScratch::default(), cost);
+    let seeds: Vec<_> = simplex.vertices().copied().collect();
+    let depth = epa::penetration(cso, &seeds, &mut EpaScratch::default(), cost);
     Some(depth.expect("the difference has volume"))
 }
 

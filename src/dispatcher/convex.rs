@@ -41,7 +41,7 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
         }
-        let pose = RelativePose::new(self.pos12);
+        let pose = RelativePose::from_valid(self.pos12);
         let cso = Cso {
             shape_1,
             shape_2,

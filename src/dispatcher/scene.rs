@@ -55,7 +55,7 @@ impl PairVisitor for ColdQuery<'_> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
         }
-        let pose = RelativePose::new(self.pos12);
+        let pose = RelativePose::from_valid(self.pos12);
         let cso = Cso {
             shape_1,
             shape_2,

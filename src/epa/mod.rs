@@ -48,13 +48,25 @@ pub struct EpaScratch {
 }
 
 /// The penetration depth, growing from the hull of `seeds`: points of the Minkowski difference,
-/// usually GJK's last simplex or the features of the previous frame.
+/// usually GJK's last simplex.
 ///
-/// Only answers that are less deep than `known_depth` by more than the tolerance are of interest:
-/// [`Depth::Known`] says that there is none. Stops early, with a negative depth, when a face's
-/// normal separates the shapes. `None` if the Minkowski difference has no volume or is not
-/// finite.
+/// Stops early, with a negative depth, when a face's normal separates the shapes. `None` if the
+/// Minkowski difference has no volume or is not finite.
 pub fn penetration<A: Support, B: Support>(
+    cso: &Cso<'_, A, B>,
+    seeds: &[CsoVertex],
+    scratch: &mut EpaScratch,
+    cost: &mut Cost,
+) -> Option<Penetration> {
+    match penetration_below(cso, seeds, f64::INFINITY, scratch, cost)? {
+        Depth::Found(found) => Some(found),
+        Depth::Known => None,
+    }
+}
+
+/// The penetration depth if it is less than `known_depth` by more than the tolerance, as
+/// [`penetration`] finds it; else [`Depth::Known`].
+pub fn penetration_below<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     seeds: &[CsoVertex],
     known_depth: f64,
@@ -96,7 +108,11 @@ pub fn penetration<A: Support, B: Support>(
     Some(Depth::Found(witness(corners, normal, bounds)))
 }
 
-/// The answer of [`penetration`].
+/// The answer of [`penetration_below`].
+#[expect(
+    clippy::large_enum_variant,
+    reason = "lives for one call, on the stack"
+)]
 #[derive(Clone, Copy, Debug)]
 pub enum Depth {
     /// No direction has a depth below that known before.

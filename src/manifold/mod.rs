@@ -75,8 +75,8 @@ impl Contacts {
     }
 }
 
-/// The contacts around the witness of a query, of those nearer than `max_distance`, along the
-/// query's `normal`.
+/// The contacts around the witness of a query along its `normal`: those nearer than `max_distance`
+/// first, then the nearest of the others, which a solver needs for what moves fast.
 pub fn contacts<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     proximity: &Proximity,
@@ -89,7 +89,8 @@ pub fn contacts<A: Polytope, B: Polytope>(
         return contacts;
     };
     patch.clip(cso, scratch);
-    let corners = patch.corners_within(scratch, [f64::NEG_INFINITY, max_distance]);
+    let corners = patch.corners_within(scratch, [f64::NEG_INFINITY, f64::INFINITY]);
+    let (corners, beyond) = reduce::split(corners, max_distance);
     let scale = cso.smaller_radius();
     let same = SAME_POINT * scale;
     let mut first = DVec2::ZERO;
@@ -103,6 +104,9 @@ pub fn contacts<A: Polytope, B: Polytope>(
         contacts.points[0] = patch.contact(cso, deepest);
     }
     for corner in reduce::spread(corners, first, same) {
+        contacts.push(patch.contact(cso, corner));
+    }
+    for corner in beyond.iter().take(MAX_POINTS - contacts.len) {
         contacts.push(patch.contact(cso, corner));
     }
     contacts
@@ -215,13 +219,13 @@ impl Patch {
         &self,
         scratch: &'s mut ClipScratch,
         range: [f64; 2],
-    ) -> &'s [ClipVertex] {
+    ) -> &'s mut [ClipVertex] {
         scratch.polygon.retain_mut(|corner| {
             let [h1, h2] = self.heights(corner.at);
             corner.distance = h2 - h1;
             (range[0]..=range[1]).contains(&corner.distance)
         });
-        &scratch.polygon
+        &mut scratch.polygon
     }
 
     /// The heights of both faces at a place in the contact plane.

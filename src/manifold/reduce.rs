@@ -5,6 +5,23 @@ use glam::DVec2;
 use super::MAX_POINTS;
 use super::clip::ClipVertex;
 
+/// The corners up to a distance, and those beyond it, the nearest of these first.
+pub(super) fn split(
+    corners: &mut [ClipVertex],
+    max_distance: f64,
+) -> (&[ClipVertex], &[ClipVertex]) {
+    let mut near = 0;
+    for i in 0..corners.len() {
+        if corners[i].distance <= max_distance {
+            corners.swap(near, i);
+            near += 1;
+        }
+    }
+    let (near, beyond) = corners.split_at_mut(near);
+    beyond.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance));
+    (near, beyond)
+}
+
 /// The corner where the faces are nearest or overlap most.
 pub(super) fn deepest(corners: &[ClipVertex]) -> Option<&ClipVertex> {
     corners

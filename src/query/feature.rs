@@ -12,6 +12,8 @@
 //!   difference, and when the origin is at least `d` inside of all of its sides, so does the ball
 //!   of radius `d`; no direction has a smaller depth. *Globally*: no other face was looked at.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
 
 use super::Proximity;
@@ -34,6 +36,10 @@ pub enum Feature {
 }
 
 /// What a pair of features turned out to prove.
+#[expect(
+    clippy::large_enum_variant,
+    reason = "lives for one call, on the stack"
+)]
 pub(super) enum Verdict {
     /// The facet's plane separates the shapes by more than was asked about.
     Apart(SeparatingAxis),
@@ -263,8 +269,8 @@ impl Test {
         let cross = along_1.cross(along_2);
         let area_squared = cross.length_squared();
         let lengths = along_1.length_squared() * along_2.length_squared();
-        // Also false for NaN.
-        if !(area_squared > PARALLEL_EDGES * lengths) {
+        let crossing_angle = area_squared.partial_cmp(&(PARALLEL_EDGES * lengths));
+        if crossing_angle != Some(Ordering::Greater) {
             return Verdict::NoPlane;
         }
         let center = cso.center();

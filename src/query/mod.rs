@@ -86,7 +86,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                 let axis = self.center_line();
                 let start = self.cso.start(axis);
                 let vertex = self.cso.support(axis, start, self.cost);
-                self.from_vertices(&[vertex], [Stage::ColdGjk, Stage::ColdEpa])
+                self.run_gjk(&[vertex], [Stage::ColdGjk, Stage::ColdEpa])
             }
             Memory::Axis(axis, ids) => {
                 match gjk::test_axis(
@@ -97,10 +97,10 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                     self.cost,
                 ) {
                     Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-                    Err(vertex) => self.from_failed_axis(axis, vertex),
+                    Err(vertex) => self.tilt_axis(axis, vertex),
                 }
             }
-            Memory::Contact(normal, features) => self.from_contact(normal, features),
+            Memory::Contact(normal, features) => self.check_contact(normal, features),
         }
     }
 
@@ -118,77 +118,67 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
 
     /// The axis separates no more, but mostly because the shapes turned a little: tilted away from
     /// where `vertex` comes too near, it often does.
-    fn from_failed_axis(&mut self, axis: DVec3, vertex: CsoVertex) -> Option<(Answer, Stage)> {
+    fn tilt_axis(&mut self, axis: DVec3, vertex: CsoVertex) -> Option<(Answer, Stage)> {
         let sideways = vertex.w - axis * axis.dot(vertex.w);
         let tilted = axis - sideways.normalize_or_zero() * TILT;
         let tilted = tilted.normalize();
         match gjk::test_axis(self.cso, tilted, vertex.ids, self.max_distance, self.cost) {
             Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-            Err(second) => self.from_vertices(&[vertex, second], WARM),
+            Err(second) => self.run_gjk(&[vertex, second], WARM),
         }
     }
 
     /// From the facet beyond a side of the previous one. From the side alone GJK's first direction
     /// would be sideways, far from where the shapes are near.
-    fn from_side(&mut self, side: &Side) -> Option<(Answer, Stage)> {
+    fn cross_side(&mut self, side: &Side) -> Option<(Answer, Stage)> {
         let [from, to] = side.ends;
         let tilted = (side.normal + side.outward * TILT).normalize();
         match gjk::test_axis(self.cso, tilted, from.ids, self.max_distance, self.cost) {
             Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-            Err(beyond) => self.from_vertices(&[from, to, beyond], WARM),
+            Err(beyond) => self.run_gjk(&[from, to, beyond], WARM),
         }
     }
 
     /// GJK from vertices of the Minkowski difference, and EPA if the shapes overlap.
-    fn from_vertices(
-        &mut self,
-        start: &[CsoVertex],
-        stages: [Stage; 2],
-    ) -> Option<(Answer, Stage)> {
+    fn run_gjk(&mut self, start: &[CsoVertex], stages: [Stage; 2]) -> Option<(Answer, Stage)> {
         match gjk::distance::<Voronoi, _, _>(self.cso, start, self.max_distance, self.cost) {
             Outcome::Apart(apart) => Some((Answer::Apart(apart), stages[0])),
             Outcome::Near(closest) => Some((self.near(&closest), stages[0])),
             Outcome::Overlap(simplex) => {
                 let mut seeds = Seeds::default();
                 simplex.vertices().for_each(|vertex| seeds.push(*vertex));
-                match self.depth(seeds.as_slice(), f64::INFINITY)? {
-                    Depth::Found(depth) => Some((self.overlapping(&depth), stages[1])),
-                    Depth::Known => None,
-                }
+                let seeds = seeds.as_slice();
+                let depth = epa::penetration(self.cso, seeds, self.scratch, self.cost)?;
+                Some((self.overlapping(&depth), stages[1]))
             }
         }
     }
 
-    fn depth(&mut self, seeds: &[CsoVertex], known: f64) -> Option<Depth> {
-        epa::penetration(self.cso, seeds, known, self.scratch, self.cost)
-    }
-
-    fn from_contact(&mut self, normal: DVec3, features: [Feature; 2]) -> Option<(Answer, Stage)> {
+    fn check_contact(&mut self, normal: DVec3, features: [Feature; 2]) -> Option<(Answer, Stage)> {
         let tolerance = DEPTH_GAP * self.cso.smaller_radius();
         match feature::certify(self.cso, features, self.max_distance, tolerance, self.cost) {
             Verdict::Apart(apart) => Some((Answer::Apart(apart), Stage::Axis)),
             Verdict::Certified(proximity) => Some((Answer::Near(proximity), Stage::Feature)),
-            Verdict::Beyond(side) => self.from_side(&side),
-            Verdict::Unproved(seeds, candidate) => {
-                self.from_seeds(seeds.as_slice(), Some(candidate))
-            }
+            Verdict::Beyond(side) => self.cross_side(&side),
+            Verdict::Unproved(seeds, candidate) => self.run_epa(seeds.as_slice(), Some(candidate)),
             Verdict::NoPlane => {
                 let start = feature::vertices(self.cso, features);
                 let vertex = self.cso.support(normal, start, self.cost);
-                self.from_vertices(&[vertex], WARM)
+                self.run_gjk(&[vertex], WARM)
             }
         }
     }
 
     /// The depth, grown from points near the previous contact, if it is not that of the
     /// `candidate`; where it finds the shapes separate, GJK finds how far.
-    fn from_seeds(
+    fn run_epa(
         &mut self,
         seeds: &[CsoVertex],
         candidate: Option<Proximity>,
     ) -> Option<(Answer, Stage)> {
         let known = candidate.map_or(f64::INFINITY, |c| -c.signed_distance);
-        let depth = match (self.depth(seeds, known)?, candidate) {
+        let below = epa::penetration_below(self.cso, seeds, known, self.scratch, self.cost)?;
+        let depth = match (below, candidate) {
             (Depth::Found(depth), _) => depth,
             (Depth::Known, candidate) => return Some((Answer::Near(candidate?), Stage::WarmEpa)),
         };
@@ -203,7 +193,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             return Some((Answer::Apart(axis), Stage::WarmEpa));
         }
         if separation > 0.0 {
-            return self.from_vertices(&depth.face, WARM);
+            return self.run_gjk(&depth.face, WARM);
         }
         Some((self.overlapping(&depth), Stage::WarmEpa))
     }
