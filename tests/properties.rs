@@ -130,7 +130,7 @@ fn contact(shapes: [&SharedShape; 2], pose: &Pose) -> Contact {
 
 proptest! {
     #![proptest_config(ProptestConfig {
-        cases: 400,
+        cases: 2000,
         failure_persistence: None,
         rng_seed: prop::test_runner::RngSeed::Fixed(1988),
         ..ProptestConfig::default()
