@@ -138,7 +138,10 @@ where
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
         let shapes = [g1, g2];
-        if composite::contact_manifolds(self, pos12, shapes, prediction, manifolds, workspace) {
+        // Two hulls, the pairs that matter most, need not be asked whether they have parts.
+        if !pair::are_hulls(g1, g2)
+            && composite::contact_manifolds(self, pos12, shapes, prediction, manifolds, workspace)
+        {
             return Ok(());
         }
         if manifolds.is_empty() {

@@ -81,6 +81,13 @@ fn is_hull(shape: &dyn Shape, shape_type: ShapeType) -> bool {
     }
 }
 
+/// Whether both shapes are hulls.
+pub(super) fn are_hulls(shape_1: &dyn Shape, shape_2: &dyn Shape) -> bool {
+    [shape_1, shape_2]
+        .into_iter()
+        .all(|shape| is_hull(shape, shape.shape_type()))
+}
+
 /// Visits the pair if one of its shapes is a hull and both are polytopes; else `None`.
 #[inline]
 pub(super) fn visit<V: PairVisitor>(

@@ -138,19 +138,21 @@ fn center_and_radius(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(DVec3, 
         volume += v;
         moment += (a + b + c) * v;
     }
-    if volume < 0.0 {
+    let farthest = |from: DVec3| {
+        let distances = points
+            .iter()
+            .map(|p| (p.as_dvec3() - from).length_squared());
+        distances.fold(0.0, f64::max).sqrt()
+    };
+    // Of a flat surface rounding chooses the sign.
+    if volume < -THINNEST * farthest(origin).powi(3) {
         return Err(HullError::InsideOut);
     }
-    let center = origin + moment / (4.0 * volume);
-    if !center.is_finite() {
+    if volume <= 0.0 {
         return Err(HullError::Flat);
     }
-    let radius = points
-        .iter()
-        .map(|p| (p.as_dvec3() - center).length_squared())
-        .fold(0.0, f64::max)
-        .sqrt();
-    Ok((center, radius))
+    let center = origin + moment / (4.0 * volume);
+    Ok((center, farthest(center)))
 }
 
 /// No edge is a dent, beyond rounding. For a closed surface, convexity at every edge is convexity.
