@@ -1,4 +1,100 @@
-//! A coherent convex-hull narrow phase for rapier.
+//! A coherent narrow phase for the convex hulls of [rapier](https://rapier.rs) worlds.
+//!
+//! [`IsaGjkDispatcher`] answers pairs with a convex hull, starting from what the previous frame
+//! knew about them, and passes every other pair on to parry's own dispatcher. It is installed in
+//! one line. Plain `SharedShape::convex_hull` colliders need no change; a [`HullShape`] carries
+//! its prepared hull along, so that no table is searched for it, and finds its own bounding box.
+//!
+//! # Quick start
+//!
+//! ```
+//! use isa_gjk::prelude::*;
+//! use rapier3d::prelude::*;
+//!
+//! let dispatcher = IsaGjkDispatcher::default();
+//! let mut world = PhysicsWorld {
+//!     narrow_phase: NarrowPhase::with_query_dispatcher(dispatcher.clone()),
+//!     ..PhysicsWorld::default()
+//! };
+//! let floor = ColliderBuilder::cuboid(5.0, 0.5, 5.0).translation(Vector::new(0.0, -0.5, 0.0));
+//! world.insert_collider(floor, None);
+//!
+//! // Half a metre across, in the collider's frame.
+//! let corners: Vec<Vector> = (0..8)
+//!     .map(|i| Vector::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32) * 0.5)
+//!     .collect();
+//! let plain = SharedShape::convex_hull(&corners).expect("a solid");
+//! let prepared = SharedShape::new(HullShape::from_points(&corners)?);
+//! let bodies = [(plain, 0.1), (prepared, 1.0)].map(|(shape, height)| {
+//!     let body = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, height, 0.0));
+//!     world.insert(body, ColliderBuilder::new(shape)).0
+//! });
+//! for _ in 0..120 {
+//!     world.step();
+//! }
+//! let [low, high] = bodies.map(|body| world.bodies[body].translation().y);
+//! assert!(low.abs() < 0.01 && (high - 0.5).abs() < 0.01, "one stands on the other");
+//!
+//! let stats = dispatcher.stats();
+//! println!("{} of {} queries ended at once", stats.answered[0], stats.queries());
+//! # assert!(stats.queries() > 0);
+//! # Ok::<(), HullError>(())
+//! ```
+//!
+//! # Frames and units
+//!
+//! Frame 1 is that of a pair's first shape; normals point from shape 1 to shape 2. Positions are
+//! in the named shape's frame, lengths in the units of the shapes (metres in rapier). Distances
+//! are positive between separate shapes, and minus the penetration depth between overlapping
+//! ones. Input is f32, all arithmetic behind it f64.
+//!
+//! # Map
+//!
+//! A module uses only those above it.
+//!
+//! | Module | What it is |
+//! |---|---|
+//! | [`tolerance`] | every epsilon, with its reason |
+//! | [`stats`] | which stage answered, at what cost |
+//! | [`pose`] | the second shape's pose in frame 1, in f64 |
+//! | [`support`] | extreme points of shapes and of their Minkowski difference |
+//! | [`hull`] | the edge graph, faces and start-vertex table of a convex hull |
+//! | [`primitive`] | boxes, triangles and smooth shapes, as hulls meet them |
+//! | [`simplex`] | the point of a simplex nearest to the origin, in three ways |
+//! | [`gjk`] | distance and separating axis |
+//! | [`ray_cast`] | linear time of impact (the dispatcher leaves shape casts to parry) |
+//! | [`epa`] | penetration depth |
+//! | [`query`] | the stages of a coherent query, and the proof that features still touch |
+//! | [`manifold`] | clipping of faces, and the contacts that are kept |
+//! | [`hull_shape`] | a `Shape` that carries its prepared hull |
+//! | [`dispatcher`] | the plug: from parry's shapes and manifolds to queries and back |
+//!
+//! Everything above `hull_shape` works without a physics engine (poses and the hull builder are
+//! parry's):
+//!
+//! ```
+//! use isa_gjk::epa::EpaScratch;
+//! use isa_gjk::pose::RelativePose;
+//! use isa_gjk::query::{Answer, Memory, Query};
+//! use isa_gjk::stats::Cost;
+//! use isa_gjk::support::Cso;
+//! use isa_gjk::Hull;
+//! use glam::Vec3;
+//! use parry3d::math::Pose;
+//!
+//! let hull = Hull::from_points(&[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z])?;
+//! let pose = RelativePose::new(&Pose::translation(-1.5, 0.0, 0.0)).expect("a finite pose");
+//! let mut query = Query {
+//!     cso: &Cso { shape_1: &hull, shape_2: &hull, pose: &pose },
+//!     max_distance: f64::INFINITY,
+//!     scratch: &mut EpaScratch::default(),
+//!     cost: &mut Cost::default(),
+//! };
+//! let (answer, _stage) = query.run(&Memory::None).expect("finite solids");
+//! let Answer::Near(near) = answer else { unreachable!("nothing is beyond infinity") };
+//! assert!((near.signed_distance - 0.5).abs() < 1e-9);
+//! # Ok::<(), isa_gjk::HullError>(())
+//! ```
 #![forbid(unsafe_code)]
 
 pub mod dispatcher;
@@ -20,3 +116,16 @@ pub use dispatcher::IsaGjkDispatcher;
 pub use hull::{Hull, HullError};
 pub use hull_shape::HullShape;
 pub use stats::{Stage, Stats};
+
+/// All that a user of a physics world needs.
+pub mod prelude {
+    pub use crate::{Hull, HullError, HullShape, IsaGjkDispatcher, Stage, Stats};
+}
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
+#[cfg(doctest)]
+#[doc = include_str!("../docs/tips.md")]
+struct Tips;
