@@ -107,21 +107,27 @@ fn write_points<A: Polytope, B: Polytope, M, C: Default + Copy>(
     borders: [f64; 2],
 ) {
     let (n1, n2) = (manifold.local_n1.as_dvec3(), manifold.local_n2.as_dvec3());
-    let mut fresh = [None; manifold::MAX_POINTS];
-    for (slot, contact) in fresh.iter_mut().zip(contacts.as_slice()) {
-        let mut point = TrackedContact::<C>::new(
-            (contact.on_1 + n1 * borders[0]).as_vec3(),
-            (cso.pose.point_to_2(contact.on_2) + n2 * borders[1]).as_vec3(),
-            cache::pack(contact.features[0]),
-            cache::pack(contact.features[1]),
-            (contact.distance - borders[0] - borders[1]) as Real,
-        );
-        let same = |old: &&TrackedContact<C>| old.fid1 == point.fid1 && old.fid2 == point.fid2;
-        if let Some(old) = manifold.points.iter().find(same) {
-            point.data = old.data;
+    let contacts = contacts.as_slice();
+    let mut data = [C::default(); manifold::MAX_POINTS];
+    for (data, contact) in data.iter_mut().zip(contacts) {
+        let [fid1, fid2] = contact.features.map(cache::pack);
+        let mut old = manifold.points.iter();
+        if let Some(old) = old.find(|old| old.fid1 == fid1 && old.fid2 == fid2) {
+            *data = old.data;
         }
-        *slot = Some(point);
     }
     manifold.points.clear();
-    manifold.points.extend(fresh.into_iter().flatten());
+    manifold
+        .points
+        .extend(contacts.iter().zip(data).map(|(contact, data)| {
+            let [fid1, fid2] = contact.features.map(cache::pack);
+            TrackedContact {
+                local_p1: (contact.on_1 + n1 * borders[0]).as_vec3(),
+                local_p2: (cso.pose.point_to_2(contact.on_2) + n2 * borders[1]).as_vec3(),
+                dist: (contact.distance - borders[0] - borders[1]) as Real,
+                fid1,
+                fid2,
+                data,
+            }
+        }));
 }
