@@ -61,6 +61,12 @@ pub trait Polytope: Support {
     /// The name of the edge between two neighbouring vertices.
     fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32>;
 
+    /// The name of the edge from the `i`-th vertex of a face to the next.
+    fn face_edge(&self, face: FaceId, i: usize) -> Option<u32> {
+        let next = (i + 1) % self.face_len(face);
+        self.edge_id(self.face_vertex(face, i), self.face_vertex(face, next))
+    }
+
     /// The end vertices of an edge.
     fn edge(&self, id: u32) -> Option<[VertexId; 2]>;
 }

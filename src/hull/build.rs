@@ -65,7 +65,8 @@ impl Hull {
             };
             climb::support(slope, dir, start, &mut Cost::default())
         };
-        let (faces, face_of) = Faces::new(&points, triangles, radius, |normal, start| {
+        let edge = |from, to| graph.edge_id(from, to);
+        let (faces, face_of) = Faces::new(&points, triangles, radius, edge, |normal, start| {
             normal.dot(climb(&graph, &everywhere, normal, start).0)
         });
         graph.set_faces(triangles, &face_of);

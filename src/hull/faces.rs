@@ -11,6 +11,8 @@ pub(super) struct Faces {
     planes: Box<[Plane]>,
     first: Box<[u32]>,
     vertices: Box<[u16]>,
+    /// The names of the edges that start at `vertices`.
+    edges: Box<[u32]>,
 }
 
 /// A supporting plane. The normal is rounded to f32; the offset is exact for that normal.
@@ -31,16 +33,19 @@ impl Plane {
 
 impl Faces {
     /// Joins the `triangles`, and says to which face each of them went. `offset` gives the largest
-    /// `normal · p` over the hull, searching from a vertex.
+    /// `normal · p` over the hull, searching from a vertex; `edge` names the edge between two
+    /// neighbours.
     pub fn new(
         points: &[Vec3],
         triangles: &[[u32; 3]],
         radius: f64,
+        edge: impl Fn(VertexId, VertexId) -> Option<u32>,
         mut offset: impl FnMut(DVec3, VertexId) -> f64,
     ) -> (Self, Vec<u16>) {
         let regions = Regions::grow(points, triangles, radius);
         let mut first = vec![0];
         let mut vertices = Vec::with_capacity(triangles.len() * 3);
+        let mut edges = Vec::with_capacity(triangles.len() * 3);
         let mut planes = Vec::new();
         let mut face_of = vec![0_u16; triangles.len()];
         for region in regions.all {
@@ -61,6 +66,11 @@ impl Faces {
                     Plane { normal, offset }
                 });
                 vertices.extend_from_slice(&polygon.vertices);
+                let ends = polygon.vertices.iter().cycle().skip(1);
+                edges.extend(polygon.vertices.iter().zip(ends).map(|(&from, &to)| {
+                    // A polygon's sides are sides of triangles, whose edges all have names.
+                    edge(from.into(), to.into()).unwrap_or_default()
+                }));
                 first.push(vertices.len() as u32);
             }
         }
@@ -68,6 +78,7 @@ impl Faces {
             planes: planes.into(),
             first: first.into(),
             vertices: vertices.into(),
+            edges: edges.into(),
         };
         (faces, face_of)
     }
@@ -92,6 +103,12 @@ impl Faces {
         &self.vertices[self.first[f] as usize..self.first[f + 1] as usize]
     }
 
+    /// The name of the `i`-th edge of a face.
+    #[inline]
+    pub fn edge(&self, face: FaceId, i: usize) -> u32 {
+        self.edges[self.first[face as usize] as usize + i]
+    }
+
     /// Of these faces the one that looks most in direction `dir`.
     #[inline]
     pub fn most_aligned(&self, candidates: &[u16], dir: DVec3) -> FaceId {
@@ -106,7 +123,10 @@ impl Faces {
     }
 
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.planes) + size_of_val(&*self.first) + size_of_val(&*self.vertices)
+        size_of_val(&*self.planes)
+            + size_of_val(&*self.first)
+            + size_of_val(&*self.vertices)
+            + size_of_val(&*self.edges)
     }
 }
 

@@ -147,6 +147,11 @@ impl Polytope for Hull {
     }
 
     #[inline]
+    fn face_edge(&self, face: FaceId, i: usize) -> Option<u32> {
+        Some(self.faces.edge(face, i))
+    }
+
+    #[inline]
     fn edge(&self, id: u32) -> Option<[VertexId; 2]> {
         self.graph.edge(id)
     }

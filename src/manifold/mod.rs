@@ -273,12 +273,10 @@ fn facing(shape: &impl Polytope, feature: Feature, outward: DVec3) -> FaceId {
     }
 }
 
-/// The name of the `i`-th edge of a face.
+/// The `i`-th edge of a face.
 fn edge_of(shape: &impl Polytope, face: FaceId, i: usize) -> Feature {
-    let next = (i + 1) % shape.face_len(face);
-    let ends = [shape.face_vertex(face, i), shape.face_vertex(face, next)];
-    match shape.edge_id(ends[0], ends[1]) {
+    match shape.face_edge(face, i) {
         Some(edge) => Feature::Edge(edge),
-        None => Feature::Vertex(ends[0]),
+        None => Feature::Vertex(shape.face_vertex(face, i)),
     }
 }
