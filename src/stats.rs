@@ -7,7 +7,8 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Stage {
-    /// One support pair along the axis of the previous frame proved separation.
+    /// One or two support pairs proved separation: along the axis of the previous frame, or along
+    /// one tilted from it or from the plane of the previous contact.
     Axis,
     /// The features of the previous frame, re-evaluated, certified distance or depth.
     Feature,

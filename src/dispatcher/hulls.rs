@@ -24,6 +24,8 @@ const STALE_AFTER: u64 = 1 << 20;
 #[derive(Default)]
 pub(super) struct HullTable {
     entries: HashMap<Address, usize, BuildHasherDefault<AddressHasher>>,
+    /// The last address and slot met of each class of addresses, before the map is asked.
+    recent: Recent,
     slots: Vec<Slot>,
     bytes: usize,
     sweep_at: usize,
@@ -91,6 +93,7 @@ impl HullTable {
         let oldest = self.clock.saturating_sub(STALE_AFTER);
         self.slots.retain(|slot| slot.last_use >= oldest);
         self.entries.clear();
+        self.recent = Recent::default();
         for (i, slot) in self.slots.iter().enumerate() {
             self.entries.insert(slot.address, i);
         }
@@ -104,13 +107,17 @@ impl HullTable {
         self.clock += 1;
         let points = polyhedron.points();
         let address = points.as_ptr() as Address;
-        let slot = match self.entries.get(&address) {
-            Some(&i) if self.slots[i].is_of(points) => i,
-            known => {
-                let known = known.copied();
-                self.insert(address, polyhedron, known)
-            }
+        let recent = self.recent.class(address);
+        let known = if recent.0 == address {
+            Some(recent.1)
+        } else {
+            self.entries.get(&address).copied()
         };
+        let slot = match known {
+            Some(i) if self.slots[i].is_of(points) => i,
+            _ => self.insert(address, polyhedron, known),
+        };
+        *self.recent.class(address) = (address, slot);
         self.slots[slot].last_use = self.clock;
         self.slots[slot].hull.is_some().then_some(HullRef(slot))
     }
@@ -138,6 +145,26 @@ impl HullTable {
     #[inline]
     pub fn get(&self, place: HullRef) -> Option<&Hull> {
         self.slots.get(place.0)?.hull.as_ref()
+    }
+}
+
+/// A direct-mapped cache: one pair of address and slot for each class of addresses.
+struct Recent([(Address, usize); CLASSES]);
+
+/// Enough for the different hulls of most scenes, in a few kilobytes.
+const CLASSES: usize = 256;
+
+impl Default for Recent {
+    fn default() -> Self {
+        // No points are at address 0.
+        Self([(0, 0); CLASSES])
+    }
+}
+
+impl Recent {
+    #[inline]
+    fn class(&mut self, address: Address) -> &mut (Address, usize) {
+        &mut self.0[(address >> 4 ^ address >> 12) % CLASSES]
     }
 }
 
