@@ -54,26 +54,18 @@ impl Hull {
         let (center, radius) = center_and_radius(&points, triangles)?;
         require_convex(&points, triangles, radius)?;
 
-        // Before the faces are known, every tie is looked into.
-        let everywhere = vec![true; points.len()];
-        let climb = |graph: &EdgeGraph, fragile: &[bool], dir, start| {
-            let slope = Slope {
-                points: &points,
-                graph,
-                fragile,
-                radius,
-            };
-            climb::support(slope, dir, start, &mut Cost::default())
-        };
-        let edge = |from, to| graph.edge_id(from, to);
-        let (faces, face_of) = Faces::new(&points, triangles, radius, edge, |normal, start| {
-            normal.dot(climb(&graph, &everywhere, normal, start).0)
-        });
+        let (faces, face_of) = Faces::new(&points, triangles, &graph, radius);
         graph.set_faces(triangles, &face_of);
         let face_len = |f: u16| faces.polygon(f.into()).len();
         let fragile = climb::fragile(&points, &graph, radius, face_len);
+        let slope = Slope {
+            points: &points,
+            graph: &graph,
+            fragile: &fragile,
+            radius,
+        };
         let start = StartTable::new(points.len(), |dir, start| {
-            climb(&graph, &fragile, dir, start).1
+            climb::support(slope, dir, start, &mut Cost::default()).1
         });
         let hull = Self {
             points: points.into(),

@@ -2,7 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
-use crate::support::{FaceId, VertexId};
+use super::graph::EdgeGraph;
+use crate::support::FaceId;
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, SLIVER};
 
 /// Planes, and polygons in compressed rows.
@@ -29,18 +30,35 @@ impl Plane {
         normal: Vec3::ZERO,
         offset: f64::INFINITY,
     };
+
+    /// Through the outermost of the polygon's corners and their neighbours: on a convex hull no
+    /// vertex is farther out.
+    fn new(points: &[Vec3], polygon: &[u16], graph: &EdgeGraph, radius: f64) -> Self {
+        let normal = polygon_normal(points, polygon).as_vec3();
+        let height = |v: u16| normal.as_dvec3().dot(points[v as usize].as_dvec3());
+        let (mut lowest, mut offset) = (f64::INFINITY, f64::NEG_INFINITY);
+        for &corner in polygon {
+            lowest = lowest.min(height(corner));
+            offset = offset.max(height(corner));
+            for &neighbor in graph.neighbors(corner.into()) {
+                offset = offset.max(height(neighbor));
+            }
+        }
+        if offset - lowest > 2.0 * FACE_FLATNESS * radius {
+            Self::UNSUPPORTED
+        } else {
+            Self { normal, offset }
+        }
+    }
 }
 
 impl Faces {
-    /// Joins the `triangles`, and says to which face each of them went. `offset` gives the largest
-    /// `normal · p` over the hull, searching from a vertex; `edge` names the edge between two
-    /// neighbours.
+    /// Joins the `triangles` of `graph`, and says to which face each of them went.
     pub fn new(
         points: &[Vec3],
         triangles: &[[u32; 3]],
+        graph: &EdgeGraph,
         radius: f64,
-        edge: impl Fn(VertexId, VertexId) -> Option<u32>,
-        mut offset: impl FnMut(DVec3, VertexId) -> f64,
     ) -> (Self, Vec<u16>) {
         let regions = Regions::grow(points, triangles, radius);
         let mut first = vec![0];
@@ -53,23 +71,12 @@ impl Faces {
                 for &t in &polygon.triangles {
                     face_of[t] = planes.len() as u16;
                 }
-                let normal = polygon_normal(points, &polygon.vertices).as_vec3();
-                let start = polygon.vertices[0];
-                let offset = offset(normal.as_dvec3(), start.into());
-                let below = |&v: &u16| {
-                    offset - normal.as_dvec3().dot(points[v as usize].as_dvec3())
-                        > 2.0 * FACE_FLATNESS * radius
-                };
-                planes.push(if polygon.vertices.iter().any(below) {
-                    Plane::UNSUPPORTED
-                } else {
-                    Plane { normal, offset }
-                });
+                planes.push(Plane::new(points, &polygon.vertices, graph, radius));
                 vertices.extend_from_slice(&polygon.vertices);
                 let ends = polygon.vertices.iter().cycle().skip(1);
                 edges.extend(polygon.vertices.iter().zip(ends).map(|(&from, &to)| {
                     // A polygon's sides are sides of triangles, whose edges all have names.
-                    edge(from.into(), to.into()).unwrap_or_default()
+                    graph.edge_id(from.into(), to.into()).unwrap_or_default()
                 }));
                 first.push(vertices.len() as u32);
             }
