@@ -86,7 +86,7 @@ impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
             return;
         }
         let contacts = if n1 == unconstrained {
-            manifold::contacts(cso, near, near.normal, max_distance, scratch.clip)
+            manifold::contacts(cso, near, max_distance, scratch.clip)
         } else {
             let normal = n1.as_dvec3().normalize();
             let limit = ABSURD_DEPTH * near.signed_distance.min(0.0);

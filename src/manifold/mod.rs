@@ -75,17 +75,16 @@ impl Contacts {
     }
 }
 
-/// The contacts around the witness of a query along its `normal`: those nearer than `max_distance`
+/// The contacts around the witness of a query along its normal: those nearer than `max_distance`
 /// first, then the nearest of the others, which a solver needs for what moves fast.
 pub fn contacts<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     proximity: &Proximity,
-    normal: DVec3,
     max_distance: f64,
     scratch: &mut ClipScratch,
 ) -> Contacts {
     let mut contacts = Contacts::witness(proximity);
-    let Some(patch) = Patch::new(cso, proximity, normal) else {
+    let Some(patch) = Patch::new(cso, proximity, proximity.normal) else {
         return contacts;
     };
     patch.clip(cso, scratch);

@@ -160,7 +160,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             Verdict::Apart(apart) => Some((Answer::Apart(apart), Stage::Axis)),
             Verdict::Certified(proximity) => Some((Answer::Near(proximity), Stage::Feature)),
             Verdict::Beyond(side) => self.cross_side(&side),
-            Verdict::Unproved(seeds, candidate) => self.run_epa(seeds.as_slice(), Some(candidate)),
+            Verdict::Unproved(seeds, candidate) => self.run_epa(seeds.as_slice(), candidate),
             Verdict::NoPlane => {
                 let start = feature::vertices(self.cso, features);
                 let vertex = self.cso.support(normal, start, self.cost);
@@ -171,16 +171,11 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
 
     /// The depth, grown from points near the previous contact, if it is not that of the
     /// `candidate`; where it finds the shapes separate, GJK finds how far.
-    fn run_epa(
-        &mut self,
-        seeds: &[CsoVertex],
-        candidate: Option<Proximity>,
-    ) -> Option<(Answer, Stage)> {
-        let known = candidate.map_or(f64::INFINITY, |c| -c.signed_distance);
-        let below = epa::penetration_below(self.cso, seeds, known, self.scratch, self.cost)?;
-        let depth = match (below, candidate) {
-            (Depth::Found(depth), _) => depth,
-            (Depth::Known, candidate) => return Some((Answer::Near(candidate?), Stage::WarmEpa)),
+    fn run_epa(&mut self, seeds: &[CsoVertex], candidate: Proximity) -> Option<(Answer, Stage)> {
+        let known = -candidate.signed_distance;
+        let depth = match epa::penetration_below(self.cso, seeds, known, self.scratch, self.cost)? {
+            Depth::Found(depth) => depth,
+            Depth::Known => return Some((Answer::Near(candidate), Stage::WarmEpa)),
         };
         let separation = -depth.depth;
         let ids = depth.face[0].ids;
