@@ -8,10 +8,12 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 #[repr(u8)]
 pub enum Stage {
     /// One or two support pairs proved separation: along the axis of the previous frame, or along
-    /// one tilted from it or from the plane of the previous contact.
+    /// one tilted from it.
     Axis,
-    /// The features of the previous frame, re-evaluated, certified distance or depth.
+    /// The features of the previous frame, re-evaluated, certified separation, distance or depth.
     Feature,
+    /// Features near the previous ones did, walked to from facet to facet.
+    Walk,
     /// GJK started from the previous frame's axis and vertices.
     WarmGjk,
     /// Penetration depth expanded from the previous frame's features.
@@ -24,11 +26,12 @@ pub enum Stage {
 
 impl Stage {
     /// How many stages there are.
-    pub const COUNT: usize = 6;
+    pub const COUNT: usize = 7;
     /// All stages, in the order of [`Stats::answered`].
     pub const ALL: [Self; Self::COUNT] = [
         Self::Axis,
         Self::Feature,
+        Self::Walk,
         Self::WarmGjk,
         Self::WarmEpa,
         Self::ColdGjk,
@@ -40,6 +43,7 @@ impl Stage {
         match self {
             Self::Axis => "axis",
             Self::Feature => "feature",
+            Self::Walk => "walk",
             Self::WarmGjk => "warm GJK",
             Self::WarmEpa => "warm EPA",
             Self::ColdGjk => "cold GJK",

@@ -45,11 +45,6 @@ impl Hull {
         self.faces.len()
     }
 
-    /// The neighbours of a vertex on the triangulated surface; the last may be repeated.
-    pub fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> + '_ {
-        self.graph.neighbors(vertex).iter().map(|&v| v.into())
-    }
-
     /// Bytes of heap memory held.
     pub fn heap_bytes(&self) -> usize {
         size_of_val(&*self.points)
@@ -101,6 +96,12 @@ impl Polytope for Hull {
     #[inline]
     fn vertex(&self, vertex: VertexId) -> DVec3 {
         self.points[vertex as usize].as_dvec3()
+    }
+
+    /// The neighbours on the triangulated surface; the last may be repeated.
+    #[inline]
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
+        self.graph.neighbors(vertex).iter().map(|&v| v.into())
     }
 
     #[inline]

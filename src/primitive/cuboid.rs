@@ -83,6 +83,11 @@ impl Polytope for CuboidPolytope {
     }
 
     #[inline]
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
+        (0..3).map(move |k| vertex ^ 1 << k)
+    }
+
+    #[inline]
     fn has_face(&self, face: FaceId) -> bool {
         face < 6
     }

@@ -77,6 +77,11 @@ impl Polytope for TrianglePolytope {
     }
 
     #[inline]
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
+        (1..3).map(move |k| (vertex + k) % 3)
+    }
+
+    #[inline]
     fn has_face(&self, face: FaceId) -> bool {
         face < 2
     }

@@ -47,6 +47,8 @@ pub(super) enum Verdict {
     Certified(Proximity),
     /// The origin projects beyond this side of the facet: another one is nearest by now.
     Beyond(Side),
+    /// The facet's plane, with this normal, cuts through the difference: this vertex is beyond it.
+    Cut(CsoVertex, DVec3),
     /// The shapes overlap, perhaps less elsewhere. Points of the Minkowski difference around the
     /// facet, to go on from, and the answer if the facet turns out to be the nearest.
     Unproved(Seeds, Proximity),
@@ -83,6 +85,12 @@ pub(super) struct Seeds {
 }
 
 impl Seeds {
+    pub fn new(points: &[CsoVertex]) -> Self {
+        let mut seeds = Self::default();
+        points.iter().for_each(|point| seeds.push(*point));
+        seeds
+    }
+
     pub fn as_slice(&self) -> &[CsoVertex] {
         &self.points[..self.len]
     }
@@ -293,6 +301,9 @@ impl Test {
                 ids: extreme.ids,
             });
         }
+        if -normal.dot(offset) - signed_distance > self.tolerance {
+            return Verdict::Cut(extreme, normal);
+        }
         // `along_1` then `-along_2` turn clockwise about `cross`.
         let turn = if outward < 0.0 {
             [0, 1, 2, 3]
@@ -311,10 +322,6 @@ impl Test {
         let corner = |i: usize| vertices[i].w;
         if let Some(i) = side_beyond(4, corner, normal, self.tolerance) {
             return Verdict::Beyond(Side::new(vertices[i], vertices[(i + 1) % 4], normal));
-        }
-        if -normal.dot(offset) - signed_distance > self.tolerance {
-            // Another vertex is extreme by now; beyond some side of the edges, too.
-            return Verdict::Beyond(Side::new(extreme, vertices[0], normal));
         }
         let [s, _] = crossing(offset, along_1, along_2);
         let on_1 = a0 + along_1 * s;
@@ -457,6 +464,9 @@ impl Verdict {
                 normal: -pose.direction_to_1(side.normal),
                 outward: -pose.direction_to_1(side.outward),
             }),
+            Self::Cut(vertex, normal) => {
+                Self::Cut(mirrored(&vertex, pose), -pose.direction_to_1(normal))
+            }
             Self::Unproved(mut seeds, candidate) => {
                 for seed in &mut seeds.points[..seeds.len] {
                     *seed = mirrored(seed, pose);

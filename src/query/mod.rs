@@ -3,13 +3,15 @@
 //!
 //! 1. [`Stage::Axis`]: one support pair along the previous axis still separates.
 //! 2. [`Stage::Feature`]: the previous nearest features still prove distance or depth.
-//! 3. [`Stage::WarmGjk`]: incremental GJK from the previous axis and vertices.
-//! 4. [`Stage::WarmEpa`]: the depth, expanded from the previous features.
+//! 3. [`Stage::Walk`]: features next to them do.
+//! 4. [`Stage::WarmGjk`]: incremental GJK from the previous axis and vertices.
+//! 5. [`Stage::WarmEpa`]: the depth, expanded from the previous features.
 //!
 //! Without a previous frame GJK and EPA start cold. A stale or wrong memory costs time, never
 //! accuracy: nothing is believed that is not re-evaluated at the present poses.
 
 mod feature;
+mod walk;
 
 pub use feature::{Feature, vertices};
 
@@ -21,11 +23,15 @@ use crate::simplex::Voronoi;
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 use crate::tolerance::DEPTH_GAP;
-use feature::{Seeds, Side, Verdict};
+use feature::{Seeds, Verdict};
 
 /// Tangent of the angle by which a direction is turned towards where the next facet is to be
 /// expected. Hulls of a hundred vertices have dihedral angles around it; any value is correct.
 const TILT: f64 = 0.2;
+
+/// A contact rolls over to the next facet or the one after; one that is not found by then is not
+/// near, or the nearest point is no facet's, and GJK finds it in fewer steps.
+const MAX_WALK: usize = 6;
 
 /// The stages of a query that goes on from a previous frame.
 const WARM: [Stage; 2] = [Stage::WarmGjk, Stage::WarmEpa];
@@ -100,7 +106,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                     Err(vertex) => self.tilt_axis(axis, vertex),
                 }
             }
-            Memory::Contact(normal, features) => self.check_contact(normal, features),
+            Memory::Contact(normal, features) => self.follow(normal, features, Stage::Feature),
         }
     }
 
@@ -124,18 +130,10 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         let tilted = tilted.normalize();
         match gjk::test_axis(self.cso, tilted, vertex.ids, self.max_distance, self.cost) {
             Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-            Err(second) => self.run_gjk(&[vertex, second], WARM),
-        }
-    }
-
-    /// From the facet beyond a side of the previous one. From the side alone GJK's first direction
-    /// would be sideways, far from where the shapes are near.
-    fn cross_side(&mut self, side: &Side) -> Option<(Answer, Stage)> {
-        let [from, to] = side.ends;
-        let tilted = (side.normal + side.outward * TILT).normalize();
-        match gjk::test_axis(self.cso, tilted, from.ids, self.max_distance, self.cost) {
-            Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-            Err(beyond) => self.run_gjk(&[from, to, beyond], WARM),
+            Err(second) => match walk::around(self.cso, &second, tilted) {
+                Some(features) => self.follow(tilted, features, Stage::Walk),
+                None => self.run_gjk(&[vertex, second], WARM),
+            },
         }
     }
 
@@ -154,18 +152,53 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
     }
 
-    fn check_contact(&mut self, normal: DVec3, features: [Feature; 2]) -> Option<(Answer, Stage)> {
+    /// Re-evaluates features, and walks on from facet to facet to where the origin projects into
+    /// one. Where features span no plane, `normal` tells where to look. `stage` is that of an answer
+    /// by the first facet.
+    fn follow(
+        &mut self,
+        normal: DVec3,
+        mut features: [Feature; 2],
+        mut stage: Stage,
+    ) -> Option<(Answer, Stage)> {
         let tolerance = DEPTH_GAP * self.cso.smaller_radius();
-        match feature::certify(self.cso, features, self.max_distance, tolerance, self.cost) {
-            Verdict::Apart(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-            Verdict::Certified(proximity) => Some((Answer::Near(proximity), Stage::Feature)),
-            Verdict::Beyond(side) => self.cross_side(&side),
-            Verdict::Unproved(seeds, candidate) => self.run_epa(seeds.as_slice(), candidate),
-            Verdict::NoPlane => {
-                let start = feature::vertices(self.cso, features);
-                let vertex = self.cso.support(normal, start, self.cost);
-                self.run_gjk(&[vertex], WARM)
+        let mut crossed = None;
+        let mut steps_left = MAX_WALK;
+        loop {
+            let verdict =
+                feature::certify(self.cso, features, self.max_distance, tolerance, self.cost);
+            let (next, way) = match verdict {
+                Verdict::Apart(apart) => return Some((Answer::Apart(apart), stage)),
+                Verdict::Certified(proximity) => return Some((Answer::Near(proximity), stage)),
+                Verdict::Unproved(seeds, candidate) => {
+                    return self.run_epa(seeds.as_slice(), candidate);
+                }
+                Verdict::Beyond(side) => {
+                    let [from, to] = side.ends.map(|end| end.ids);
+                    if crossed == Some([to, from]) {
+                        // Back over the same side: what is nearest lies on it.
+                        return self.run_gjk(&side.ends, WARM);
+                    }
+                    crossed = Some([from, to]);
+                    (walk::across(self.cso, &side), Seeds::new(&side.ends))
+                }
+                Verdict::Cut(vertex, normal) => (
+                    walk::around(self.cso, &vertex, normal),
+                    Seeds::new(&[vertex]),
+                ),
+                Verdict::NoPlane => {
+                    let start = feature::vertices(self.cso, features);
+                    let vertex = self.cso.support(normal, start, self.cost);
+                    let next = walk::around(self.cso, &vertex, normal);
+                    (next, Seeds::new(&[vertex]))
+                }
+            };
+            match next {
+                Some(next) if steps_left > 0 => features = next,
+                _ => return self.run_gjk(way.as_slice(), WARM),
             }
+            steps_left -= 1;
+            stage = Stage::Walk;
         }
     }
 

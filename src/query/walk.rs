@@ -1,0 +1,216 @@
+//! From a facet of the Minkowski difference to the one across a side, without building either.
+//!
+//! A side of a facet is an edge of one shape at a vertex of the other. Turned about the edge, from
+//! the facet's normal to that of the face beyond the edge, the normal either arrives, and the face
+//! and the vertex span the next facet; or on its way an edge at the vertex comes level, and the
+//! two edges do. (On the sphere of normals: an arc of the one shape followed until it leaves the
+//! vertex's region of the other.)
+
+use glam::DVec3;
+
+use super::feature::{Feature, Side};
+use crate::pose::RelativePose;
+use crate::support::{Cso, CsoVertex, Polytope, VertexId};
+
+/// The features of the facet across `side`. They are a proposal, to be certified. `None` where
+/// the side is not one of an edge and a vertex.
+pub(super) fn across<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    side: &Side,
+) -> Option<[Feature; 2]> {
+    let [[from_1, from_2], [to_1, to_2]] = side.ends.map(|end| end.ids);
+    let (normal, outward) = (side.normal, side.outward);
+    if from_2 == to_2 {
+        let ridge = Ridge {
+            edge: [from_1, to_1],
+            vertex: from_2,
+        };
+        return ridge.next(cso.shape_1, cso.shape_2, cso.pose, [normal, outward]);
+    }
+    if from_1 != to_1 {
+        return None;
+    }
+    let ridge = Ridge {
+        edge: [from_2, to_2],
+        vertex: from_1,
+    };
+    // As shape 2 sees it: what looks away from shape 1 for the one looks inwards for the other.
+    let seen = [normal, outward].map(|dir| -cso.pose.direction_to_2(dir));
+    let pose = cso.pose.inverse();
+    let [feature_2, feature_1] = ridge.next(cso.shape_2, cso.shape_1, &pose, seen)?;
+    Some([feature_1, feature_2])
+}
+
+/// The features of a facet at `vertex`, which is extreme along `normal`: turned to where the origin
+/// is, the normal comes to the first edge around the vertex, and along it to a facet.
+pub(super) fn around<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    vertex: &CsoVertex,
+    normal: DVec3,
+) -> Option<[Feature; 2]> {
+    let [id_1, id_2] = vertex.ids;
+    let sideways = (normal * normal.dot(vertex.w) - vertex.w).try_normalize()?;
+    let mut first = Turn::default();
+    let corner_1 = cso.shape_1.vertex(id_1);
+    for neighbor in cso.shape_1.neighbors(id_1) {
+        let along = cso.shape_1.vertex(neighbor) - corner_1;
+        first.meet([normal, sideways], along, [neighbor, id_2]);
+    }
+    let corner_2 = cso.shape_2.vertex(id_2);
+    let seen = [normal, sideways].map(|dir| cso.pose.direction_to_2(dir));
+    for neighbor in cso.shape_2.neighbors(id_2) {
+        let along = corner_2 - cso.shape_2.vertex(neighbor);
+        first.meet(seen, along, [id_1, neighbor]);
+    }
+    let ids = first.to?;
+    let normal = (normal + sideways * first.tangent).normalize();
+    let on_1 = cso.shape_1.vertex(ids[0]);
+    let end = CsoVertex {
+        w: on_1 - cso.pose.point_to_1(cso.shape_2.vertex(ids[1])),
+        on_1,
+        ids,
+    };
+    let beside = (end.w - vertex.w).cross(normal);
+    let side = Side {
+        ends: [*vertex, end],
+        normal,
+        outward: beside * beside.dot(sideways).signum(),
+    };
+    across(cso, &side)
+}
+
+/// The least turn of a normal that meets an edge.
+struct Turn {
+    tangent: f64,
+    /// The vertices at the edge's other end.
+    to: Option<[VertexId; 2]>,
+}
+
+impl Default for Turn {
+    fn default() -> Self {
+        Self {
+            tangent: f64::INFINITY,
+            to: None,
+        }
+    }
+}
+
+impl Turn {
+    /// The edge `along` comes level when the normal has been turned by some angle to the side.
+    #[inline]
+    fn meet(&mut self, [normal, sideways]: [DVec3; 2], along: DVec3, to: [VertexId; 2]) {
+        let (below, rise) = (normal.dot(along).min(0.0), sideways.dot(along));
+        if rise > 0.0 && -below < self.tangent * rise {
+            self.tangent = -below / rise;
+            self.to = Some(to);
+        }
+    }
+}
+
+/// An edge of shape `p` at a vertex of shape `q`.
+struct Ridge {
+    edge: [VertexId; 2],
+    vertex: VertexId,
+}
+
+impl Ridge {
+    /// The features of `p` and `q` that span the next facet. `normal` and `outward`, in the frame
+    /// of `p`, are the present facet's outward normal and the direction in its plane beyond the
+    /// ridge.
+    fn next<P: Polytope, Q: Polytope>(
+        &self,
+        p: &P,
+        q: &Q,
+        q_pose: &RelativePose,
+        [normal, outward]: [DVec3; 2],
+    ) -> Option<[Feature; 2]> {
+        let edge = p.edge_id(self.edge[0], self.edge[1])?;
+        let face = p.face_beside(self.edge, outward);
+        let [first, last] = [normal, p.face_normal(face)].map(|n| -q_pose.direction_to_2(n));
+        let corner = q.vertex(self.vertex);
+        // The way from the one normal to the other goes from 0 to 1.
+        let mut nearest = 1.0;
+        let mut level = None;
+        for neighbor in q.neighbors(self.vertex) {
+            let along = q.vertex(neighbor) - corner;
+            let (below, above) = (first.dot(along).min(0.0), last.dot(along));
+            // The edge rises on the way, and before the nearest one so far.
+            if above > 0.0 && -below < nearest * (above - below) {
+                nearest = -below / (above - below);
+                level = Some(neighbor);
+            }
+        }
+        Some(match level {
+            None => [Feature::Face(face), Feature::Vertex(self.vertex)],
+            Some(neighbor) => [
+                Feature::Edge(edge),
+                Feature::Edge(q.edge_id(self.vertex, neighbor)?),
+            ],
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hull::Hull;
+    use crate::query::feature::{self, Verdict};
+    use crate::stats::Cost;
+    use glam::Vec3;
+    use parry3d::math::Pose;
+
+    fn ball_of_points(count: usize, dice: &mut oorandom::Rand64) -> Hull {
+        let points: Vec<Vec3> = (0..count).map(|_| direction(dice).as_vec3()).collect();
+        Hull::from_points(&points).expect("points on a ball are their own hull")
+    }
+
+    fn direction(dice: &mut oorandom::Rand64) -> DVec3 {
+        let [x, y, z] = [(); 3].map(|()| dice.rand_float() - 0.5);
+        DVec3::new(x, y, z).normalize()
+    }
+
+    /// Of all vertices of the difference, how far the outermost is beyond the plane of `features`.
+    fn excess(cso: &Cso<'_, Hull, Hull>, features: [Feature; 2], normal: DVec3) -> f64 {
+        let [v1, v2] = feature::vertices(cso, features);
+        let outermost = cso.support(normal, [v1, v2], &mut Cost::default()).w;
+        let corner = cso.shape_1.vertex(v1) - cso.pose.point_to_1(cso.shape_2.vertex(v2));
+        normal.dot(outermost - corner)
+    }
+
+    /// From the facets that a turned direction meets first, over all of their sides: each proposal
+    /// is a facet of the difference, and has the ridge that was crossed.
+    #[test]
+    fn the_walk_goes_from_facet_to_facet() {
+        let mut dice = oorandom::Rand64::new(7);
+        let mut crossed = 0;
+        for _ in 0..200 {
+            let hulls = [40, 12].map(|count| ball_of_points(count, &mut dice));
+            let turn = direction(&mut dice) * 6.0 * dice.rand_float();
+            let away = direction(&mut dice) * 3.0 * dice.rand_float();
+            let pose = RelativePose::from_valid(&Pose::new(away.as_vec3(), turn.as_vec3()));
+            let cso = Cso {
+                shape_1: &hulls[0],
+                shape_2: &hulls[1],
+                pose: &pose,
+            };
+            let normal = direction(&mut dice);
+            let vertex = cso.support(normal, [0, 0], &mut Cost::default());
+            let mut features = around(&cso, &vertex, normal).expect("the origin is beside");
+            for _ in 0..20 {
+                let verdict =
+                    feature::certify(&cso, features, f64::INFINITY, 1e-6, &mut Cost::default());
+                let side = match verdict {
+                    Verdict::Beyond(side) => side,
+                    Verdict::Certified(_) | Verdict::Unproved(..) => break,
+                    _ => panic!("{features:?} is no facet"),
+                };
+                assert!(excess(&cso, features, side.normal) < 1e-6);
+                let next = across(&cso, &side).expect("a side of a facet is a ridge");
+                assert_ne!(next, features);
+                features = next;
+                crossed += 1;
+            }
+        }
+        assert!(crossed > 200, "only {crossed} sides were crossed");
+    }
+}
