@@ -7,6 +7,8 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Stage {
+    /// The balls around the shapes are apart.
+    Balls,
     /// One or two support pairs proved separation: along the axis of the previous frame, or along
     /// one tilted from it.
     Axis,
@@ -26,9 +28,10 @@ pub enum Stage {
 
 impl Stage {
     /// How many stages there are.
-    pub const COUNT: usize = 7;
+    pub const COUNT: usize = 8;
     /// All stages, in the order of [`Stats::answered`].
     pub const ALL: [Self; Self::COUNT] = [
+        Self::Balls,
         Self::Axis,
         Self::Feature,
         Self::Walk,
@@ -41,6 +44,7 @@ impl Stage {
     /// A short name for tables.
     pub const fn name(self) -> &'static str {
         match self {
+            Self::Balls => "balls",
             Self::Axis => "axis",
             Self::Feature => "feature",
             Self::Walk => "walk",

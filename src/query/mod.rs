@@ -1,11 +1,12 @@
 //! The coherent query: from what the previous frame knew, the cheapest stage that can *prove*
 //! its answer gives it.
 //!
-//! 1. [`Stage::Axis`]: one support pair along the previous axis still separates.
-//! 2. [`Stage::Feature`]: the previous nearest features still prove distance or depth.
-//! 3. [`Stage::Walk`]: features next to them do.
-//! 4. [`Stage::WarmGjk`]: incremental GJK from the previous axis and vertices.
-//! 5. [`Stage::WarmEpa`]: the depth, expanded from the previous features.
+//! 1. [`Stage::Balls`]: the bounding balls are apart.
+//! 2. [`Stage::Axis`]: one support pair along the previous axis still separates.
+//! 3. [`Stage::Feature`]: the previous nearest features still prove distance or depth.
+//! 4. [`Stage::Walk`]: features next to them do.
+//! 5. [`Stage::WarmGjk`]: incremental GJK from the previous axis and vertices.
+//! 6. [`Stage::WarmEpa`]: the depth, expanded from the previous features.
 //!
 //! Without a previous frame GJK and EPA start cold. A stale or wrong memory costs time, never
 //! accuracy: nothing is believed that is not re-evaluated at the present poses.
@@ -14,6 +15,8 @@ mod feature;
 mod walk;
 
 pub use feature::{Feature, vertices};
+
+use std::cmp::Ordering;
 
 use glam::DVec3;
 
@@ -87,6 +90,9 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     /// Answers from `memory` where that is possible, cold otherwise. `None` only if the shapes
     /// have no volume between them or are not finite.
     pub fn run(&mut self, memory: &Memory) -> Option<(Answer, Stage)> {
+        if let Some(apart) = self.test_balls(memory) {
+            return Some((Answer::Apart(apart), Stage::Balls));
+        }
         match *memory {
             Memory::None => {
                 let axis = self.center_line();
@@ -95,19 +101,36 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                 self.run_gjk(&[vertex], [Stage::ColdGjk, Stage::ColdEpa])
             }
             Memory::Axis(axis, ids) => {
-                match gjk::test_axis(
-                    self.cso,
-                    axis,
-                    self.valid_start(ids),
-                    self.max_distance,
-                    self.cost,
-                ) {
+                let start = self.valid_start(ids);
+                match gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost) {
                     Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
                     Err(vertex) => self.tilt_axis(axis, vertex),
                 }
             }
             Memory::Contact(normal, features) => self.follow(normal, features, Stage::Feature),
         }
+    }
+
+    /// Whether the balls around the shapes are too far apart already: no vertex is looked at. What
+    /// was remembered of the vertices stays.
+    #[inline]
+    fn test_balls(&self, memory: &Memory) -> Option<SeparatingAxis> {
+        let offset = -self.cso.center();
+        let reach = self.cso.size() + self.max_distance;
+        let squared = offset.length_squared();
+        if reach < 0.0 || squared.partial_cmp(&(reach * reach)) != Some(Ordering::Greater) {
+            return None;
+        }
+        let distance = squared.sqrt();
+        let axis = offset / distance;
+        Some(SeparatingAxis {
+            axis,
+            separation: distance - self.cso.size(),
+            ids: match *memory {
+                Memory::Axis(_, ids) => ids,
+                _ => self.cso.start(axis),
+            },
+        })
     }
 
     /// From the centre of shape 1 to that of shape 2; some direction where they coincide.
