@@ -1,0 +1,93 @@
+//! Whole manifold updates on one coherent trajectory: this crate's dispatcher beside parry's, both
+//! keeping their manifold from frame to frame as rapier does.
+//!
+//! Two random hulls of the unit sphere turn by half a degree and swing by two millimetres a frame
+//! (`slow`), or ten times as much (`fast`), around a gap: separated by half a size, touching,
+//! 1 % deep and 20 % deep. Times are per update.
+
+#[path = "shared/hull.rs"]
+mod hull;
+#[path = "shared/trajectory.rs"]
+mod trajectory;
+
+use std::hint::black_box;
+use std::time::{Duration, Instant};
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use hull::hull;
+use isa_gjk::IsaGjkDispatcher;
+use parry3d::math::Pose;
+use parry3d::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
+use parry3d::shape::SharedShape;
+use trajectory::{GAPS, PREDICTION, VERTICES, trajectory};
+
+/// One pass over the trajectory with a manifold of its own.
+fn pass<D: PersistentQueryDispatcher>(
+    dispatcher: &D,
+    shapes: &[SharedShape; 2],
+    poses: &[Pose],
+    manifolds: &mut Vec<ContactManifold<(), ()>>,
+) {
+    for pose in poses {
+        let _ = dispatcher.contact_manifolds(
+            black_box(pose),
+            &*shapes[0],
+            &*shapes[1],
+            PREDICTION,
+            manifolds,
+            &mut None,
+        );
+    }
+}
+
+/// Per-update time: forth and back, so that no frame follows a jump.
+fn time<D: PersistentQueryDispatcher>(
+    dispatcher: &D,
+    shapes: &[SharedShape; 2],
+    poses: &[Pose],
+    updates: u64,
+) -> Duration {
+    let round: Vec<Pose> = poses.iter().chain(poses.iter().rev()).copied().collect();
+    let mut manifolds = Vec::new();
+    pass(dispatcher, shapes, &round, &mut manifolds);
+    let rounds = updates.div_ceil(round.len() as u64);
+    let start = Instant::now();
+    for _ in 0..rounds {
+        pass(dispatcher, shapes, &round, &mut manifolds);
+    }
+    start
+        .elapsed()
+        .mul_f64(updates as f64 / (rounds * round.len() as u64) as f64)
+}
+
+fn manifolds(criterion: &mut Criterion) {
+    let ours = IsaGjkDispatcher::default();
+    for (speed_name, speed) in [("slow", 1.0), ("fast", 10.0)] {
+        for (gap_name, gap) in GAPS {
+            let mut group = criterion.benchmark_group(format!("{speed_name}/{gap_name}"));
+            for vertices in VERTICES {
+                let shapes = [hull(vertices, 1), hull(vertices, 2)];
+                let poses = trajectory(&shapes, gap, speed);
+                group.bench_function(BenchmarkId::new("isa-gjk", vertices), |b| {
+                    b.iter_custom(|updates| time(&ours, &shapes, &poses, updates));
+                });
+                group.bench_function(BenchmarkId::new("parry", vertices), |b| {
+                    b.iter_custom(|updates| {
+                        time(&DefaultQueryDispatcher, &shapes, &poses, updates)
+                    });
+                });
+            }
+            group.finish();
+        }
+    }
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default()
+        .sample_size(10)
+        .warm_up_time(Duration::from_millis(100))
+        .measurement_time(Duration::from_millis(300));
+    targets = manifolds
+}
+criterion_main!(benches);
