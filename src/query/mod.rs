@@ -36,8 +36,13 @@ const TILT: f64 = 0.2;
 /// near, or the nearest point is no facet's, and GJK finds it in fewer steps.
 const MAX_WALK: usize = 6;
 
-/// The stages of a query that goes on from a previous frame.
+/// Shapes that are farther apart than this share of their size are mostly nearest at vertices and
+/// edges. A query that wants to know so far leaves these to GJK, without a walk over facets.
+const FAR: f64 = 0.1;
+
+/// What GJK and EPA count as in a query that goes on from a previous frame, and without one.
 const WARM: [Stage; 2] = [Stage::WarmGjk, Stage::WarmEpa];
+const COLD: [Stage; 2] = [Stage::ColdGjk, Stage::ColdEpa];
 
 /// What is remembered of a pair from one frame to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,18 +101,12 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         match *memory {
             Memory::None => {
                 let axis = self.center_line();
-                let start = self.cso.start(axis);
-                let vertex = self.cso.support(axis, start, self.cost);
-                self.run_gjk(&[vertex], [Stage::ColdGjk, Stage::ColdEpa])
+                self.follow_axis(axis, self.cso.start(axis), COLD)
             }
-            Memory::Axis(axis, ids) => {
-                let start = self.valid_start(ids);
-                match gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost) {
-                    Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-                    Err(vertex) => self.tilt_axis(axis, vertex),
-                }
+            Memory::Axis(axis, ids) => self.follow_axis(axis, self.valid_start(ids), WARM),
+            Memory::Contact(normal, features) => {
+                self.follow(normal, features, Stage::Feature, WARM)
             }
-            Memory::Contact(normal, features) => self.follow(normal, features, Stage::Feature),
         }
     }
 
@@ -138,6 +137,10 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         (-self.cso.center()).normalize_or(DVec3::X)
     }
 
+    fn is_far_sighted(&self) -> bool {
+        self.max_distance > FAR * self.cso.size()
+    }
+
     fn valid_start(&self, ids: [VertexId; 2]) -> [VertexId; 2] {
         [
             self.cso.shape_1.valid_start(ids[0]),
@@ -145,17 +148,26 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         ]
     }
 
-    /// The axis separates no more, but mostly because the shapes turned a little: tilted away from
-    /// where `vertex` comes too near, it often does.
-    fn tilt_axis(&mut self, axis: DVec3, vertex: CsoVertex) -> Option<(Answer, Stage)> {
+    /// Tests an axis. If it does not separate, then often one that is tilted away from where the
+    /// shapes come too near; else the facets around are the next to look at.
+    fn follow_axis(
+        &mut self,
+        axis: DVec3,
+        start: [VertexId; 2],
+        gjk: [Stage; 2],
+    ) -> Option<(Answer, Stage)> {
+        let vertex = match gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost) {
+            Ok(apart) => return Some((Answer::Apart(apart), Stage::Axis)),
+            Err(vertex) if self.is_far_sighted() => return self.run_gjk(&[vertex], gjk),
+            Err(vertex) => vertex,
+        };
         let sideways = vertex.w - axis * axis.dot(vertex.w);
-        let tilted = axis - sideways.normalize_or_zero() * TILT;
-        let tilted = tilted.normalize();
+        let tilted = (axis - sideways.normalize_or_zero() * TILT).normalize();
         match gjk::test_axis(self.cso, tilted, vertex.ids, self.max_distance, self.cost) {
             Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
             Err(second) => match walk::around(self.cso, &second, tilted) {
-                Some(features) => self.follow(tilted, features, Stage::Walk),
-                None => self.run_gjk(&[vertex, second], WARM),
+                Some(features) => self.follow(tilted, features, Stage::Walk, gjk),
+                None => self.run_gjk(&[vertex, second], gjk),
             },
         }
     }
@@ -177,16 +189,17 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
 
     /// Re-evaluates features, and walks on from facet to facet to where the origin projects into
     /// one. Where features span no plane, `normal` tells where to look. `stage` is that of an answer
-    /// by the first facet.
+    /// by the first facet, `gjk` are those of answers by GJK and EPA.
     fn follow(
         &mut self,
         normal: DVec3,
         mut features: [Feature; 2],
         mut stage: Stage,
+        gjk: [Stage; 2],
     ) -> Option<(Answer, Stage)> {
         let tolerance = DEPTH_GAP * self.cso.smaller_radius();
         let mut crossed = None;
-        let mut steps_left = MAX_WALK;
+        let mut steps_left = if self.is_far_sighted() { 0 } else { MAX_WALK };
         loop {
             let verdict =
                 feature::certify(self.cso, features, self.max_distance, tolerance, self.cost);
@@ -194,13 +207,13 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                 Verdict::Apart(apart) => return Some((Answer::Apart(apart), stage)),
                 Verdict::Certified(proximity) => return Some((Answer::Near(proximity), stage)),
                 Verdict::Unproved(seeds, candidate) => {
-                    return self.run_epa(seeds.as_slice(), candidate);
+                    return self.run_epa(seeds.as_slice(), candidate, gjk);
                 }
                 Verdict::Beyond(side) => {
                     let [from, to] = side.ends.map(|end| end.ids);
                     if crossed == Some([to, from]) {
                         // Back over the same side: what is nearest lies on it.
-                        return self.run_gjk(&side.ends, WARM);
+                        return self.run_gjk(&side.ends, gjk);
                     }
                     crossed = Some([from, to]);
                     (walk::across(self.cso, &side), Seeds::new(&side.ends))
@@ -218,7 +231,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             };
             match next {
                 Some(next) if steps_left > 0 => features = next,
-                _ => return self.run_gjk(way.as_slice(), WARM),
+                _ => return self.run_gjk(way.as_slice(), gjk),
             }
             steps_left -= 1;
             stage = Stage::Walk;
@@ -227,11 +240,16 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
 
     /// The depth, grown from points near the previous contact, if it is not that of the
     /// `candidate`; where it finds the shapes separate, GJK finds how far.
-    fn run_epa(&mut self, seeds: &[CsoVertex], candidate: Proximity) -> Option<(Answer, Stage)> {
+    fn run_epa(
+        &mut self,
+        seeds: &[CsoVertex],
+        candidate: Proximity,
+        gjk: [Stage; 2],
+    ) -> Option<(Answer, Stage)> {
         let known = -candidate.signed_distance;
         let depth = match epa::penetration_below(self.cso, seeds, known, self.scratch, self.cost)? {
             Depth::Found(depth) => depth,
-            Depth::Known => return Some((Answer::Near(candidate), Stage::WarmEpa)),
+            Depth::Known => return Some((Answer::Near(candidate), gjk[1])),
         };
         let separation = -depth.depth;
         let ids = depth.face[0].ids;
@@ -241,12 +259,12 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                 separation,
                 ids,
             };
-            return Some((Answer::Apart(axis), Stage::WarmEpa));
+            return Some((Answer::Apart(axis), gjk[1]));
         }
         if separation > 0.0 {
-            return self.run_gjk(&depth.face, WARM);
+            return self.run_gjk(&depth.face, gjk);
         }
-        Some((self.overlapping(&depth), Stage::WarmEpa))
+        Some((self.overlapping(&depth), gjk[1]))
     }
 
     fn near(&self, closest: &Closest) -> Answer {
