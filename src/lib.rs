@@ -97,6 +97,8 @@
 //! ```
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "bevy")]
+pub mod bevy;
 pub mod dispatcher;
 pub mod epa;
 pub mod gjk;
