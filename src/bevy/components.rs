@@ -43,7 +43,8 @@ impl From<RigidBodyBuilder> for RigidBody {
 /// The shape and the surface of a body, as rapier's builder has them.
 ///
 /// The builder's position is in the frame of the body. A change, also of the shape, is applied at
-/// the next step. Removing this component leaves a body without collider.
+/// the next step. Removing this component leaves a body without collider, and without the mass
+/// that gravity acts on, unless the builder of the [`RigidBody`] gives it some.
 ///
 /// ```
 /// use isa_gjk::HullShape;
