@@ -244,6 +244,20 @@ fn a_changed_body_keeps_its_motion() {
 }
 
 #[test]
+fn a_changed_body_wakes() {
+    let (mut simulation, floor) = Simulation::with_floor(PhysicsContext::default());
+    let cube = simulation.spawn_cube(HALF);
+    simulation.run(300);
+    simulation.change(cube, |body: &mut RigidBody| body.0.gravity_scale = -1.0);
+    simulation.run(30);
+    assert!(simulation.height(cube) > 1.0, "it rises");
+
+    simulation.change(floor, |body: &mut RigidBody| *body = RigidBody::default());
+    simulation.run(30);
+    assert!(simulation.height(floor) < -1.0, "no longer fixed, it falls");
+}
+
+#[test]
 fn a_changed_collider_changes_the_shape_in_place() {
     let (mut simulation, _) = Simulation::with_floor(PhysicsContext::default());
     let body = simulation.spawn_cube(HALF);
