@@ -1,5 +1,5 @@
 //! Rapier worlds in [Bevy](https://bevy.org)'s entity-component-system, without a window or an
-//! `App` (feature `bevy`); as a plugin for an `App`, [`PhysicsPlugin`] (feature `bevy_app`).
+//! `App` (feature `bevy`); as a plugin for an `App`, `PhysicsPlugin` (feature `bevy_app`).
 //!
 //! One resource, [`PhysicsContext`], holds the rapier world, whose hulls meet through
 //! [`IsaGjkDispatcher`](crate::IsaGjkDispatcher). Spawning a [`Collider`] makes a dynamic body of
@@ -26,7 +26,7 @@
 //!
 //! let corners = [Vector::X, Vector::Y, Vector::Z].map(|axis| [axis, -axis]).concat();
 //! let hull = SharedShape::convex_hull(&corners).expect("an octahedron is solid");
-//! world.spawn((Collider(ColliderBuilder::halfspace(Vector::Y)), RigidBody::fixed()));
+//! world.spawn((Collider(ColliderBuilder::cuboid(5.0, 0.5, 5.0)), RigidBody::fixed()));
 //! let falling = world
 //!     .spawn((Collider::from(hull), PhysicsTransform::from_xyz(0.0, 5.0, 0.0)))
 //!     .id();
@@ -35,7 +35,7 @@
 //!     schedule.run(&mut world);
 //! }
 //! let height = world.get::<PhysicsTransform>(falling).unwrap().translation.y;
-//! assert!(height < 1.0, "after a second it has come down from 5 m to {height} m");
+//! assert!(height < 2.0, "after a second it has come down from 5 m to {height} m");
 //! ```
 //!
 //! There is one collider for each body; for a body of several shapes use
