@@ -8,7 +8,8 @@ use std::time::Instant;
 use bevy_ecs::prelude::*;
 use isa_gjk::Stage;
 use isa_gjk::bevy::{
-    self, Collider, NarrowPhaseStats, PhysicsContext, PhysicsSystems, PhysicsTransform, RigidBody,
+    Collider, NarrowPhaseStats, PhysicsContext, PhysicsSystems, PhysicsTransform, RigidBody,
+    install,
 };
 use oorandom::Rand32;
 use rapier3d::prelude::*;
@@ -80,7 +81,7 @@ impl Simulation {
     fn new(context: PhysicsContext) -> Self {
         let (mut world, mut schedule) = (World::new(), Schedule::default());
         world.insert_resource(context);
-        bevy::install(&mut world, &mut schedule);
+        install(&mut world, &mut schedule);
         schedule.add_systems(stir.before(PhysicsSystems::SyncBackend));
         spawn_box(&mut world);
         spawn_hulls(&mut world);

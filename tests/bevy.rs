@@ -4,8 +4,8 @@ use bevy_ecs::message::MessageCursor;
 use bevy_ecs::prelude::*;
 use isa_gjk::HullShape;
 use isa_gjk::bevy::{
-    self, Collider, CollisionEvent, NarrowPhaseStats, PhysicsContext, PhysicsSystems,
-    PhysicsTransform, RigidBody, Velocity,
+    Collider, CollisionEvent, NarrowPhaseStats, PhysicsContext, PhysicsSystems, PhysicsTransform,
+    RigidBody, Velocity, install,
 };
 use rapier3d::prelude::{ColliderBuilder, Real, RigidBodyBuilder, SharedShape, Vector};
 
@@ -22,7 +22,7 @@ impl Simulation {
     fn new(context: PhysicsContext) -> Self {
         let (mut world, mut schedule) = (World::new(), Schedule::default());
         world.insert_resource(context);
-        bevy::install(&mut world, &mut schedule);
+        install(&mut world, &mut schedule);
         Self {
             world,
             schedule,
@@ -356,7 +356,7 @@ fn statistics_count_the_dispatchers_queries_and_none_of_rapiers_own() {
 #[test]
 fn installed_twice_a_run_is_still_one_step() {
     let mut simulation = Simulation::new(PhysicsContext::default());
-    bevy::install(&mut simulation.world, &mut simulation.schedule);
+    install(&mut simulation.world, &mut simulation.schedule);
     let cube = simulation.spawn_cube(0.0);
     simulation.run(1);
     let dt = simulation.context().world.integration_parameters.dt;

@@ -18,10 +18,12 @@ use crate::stats::Stats;
 ///
 /// [`install`](super::install) inserts one that is empty. To start from other settings, insert it
 /// yourself, before any entity has a body; an entity's body does not follow into another context.
+/// Despawn nothing while the context is out of the world, as in `World::resource_scope`: its body
+/// would stay behind.
 ///
 /// ```
 /// use bevy_ecs::prelude::*;
-/// use isa_gjk::bevy::{self, Collider, PhysicsContext, RigidBody};
+/// use isa_gjk::bevy::{Collider, PhysicsContext, RigidBody, install};
 /// use rapier3d::prelude::{ColliderBuilder, Vector};
 ///
 /// let mut context = PhysicsContext::default();
@@ -29,7 +31,7 @@ use crate::stats::Stats;
 ///
 /// let (mut world, mut schedule) = (World::new(), Schedule::default());
 /// world.insert_resource(context);
-/// bevy::install(&mut world, &mut schedule);
+/// install(&mut world, &mut schedule);
 /// let stone = world.spawn(Collider(ColliderBuilder::ball(0.1))).id();
 /// schedule.run(&mut world);
 ///
@@ -82,11 +84,11 @@ impl PhysicsContext {
     ///
     /// ```
     /// use bevy_ecs::prelude::*;
-    /// use isa_gjk::bevy::{self, PhysicsContext};
+    /// use isa_gjk::bevy::{PhysicsContext, install};
     ///
     /// let (mut world, mut schedule) = (World::new(), Schedule::default());
     /// world.insert_resource(PhysicsContext::with_default_narrow_phase());
-    /// bevy::install(&mut world, &mut schedule);
+    /// install(&mut world, &mut schedule);
     /// ```
     pub fn with_default_narrow_phase() -> Self {
         let mut context = Self::default();

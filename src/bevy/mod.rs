@@ -17,12 +17,12 @@
 //!
 //! ```
 //! use bevy_ecs::prelude::*;
-//! use isa_gjk::bevy::{self, Collider, PhysicsTransform, RigidBody};
+//! use isa_gjk::bevy::{Collider, PhysicsTransform, RigidBody, install};
 //! use rapier3d::prelude::{ColliderBuilder, SharedShape, Vector};
 //!
 //! let mut world = World::new();
 //! let mut schedule = Schedule::default();
-//! bevy::install(&mut world, &mut schedule);
+//! install(&mut world, &mut schedule);
 //!
 //! let corners = [Vector::X, Vector::Y, Vector::Z].map(|axis| [axis, -axis]).concat();
 //! let hull = SharedShape::convex_hull(&corners).expect("an octahedron is solid");
@@ -40,7 +40,8 @@
 //!
 //! There is one collider for each body; for a body of several shapes use
 //! `SharedShape::compound`. Joints, queries and everything else of rapier are reached through
-//! [`PhysicsContext::world`].
+//! [`PhysicsContext::world`]. Some types are called as rapier's are: import them by name, and they
+//! prevail over `rapier3d::prelude::*`.
 
 mod collision;
 mod components;

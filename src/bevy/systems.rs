@@ -17,7 +17,7 @@ use crate::stats::Stats;
 ///
 /// ```
 /// use bevy_ecs::prelude::*;
-/// use isa_gjk::bevy::{self, PhysicsSystems, Velocity};
+/// use isa_gjk::bevy::{PhysicsSystems, Velocity, install};
 /// use rapier3d::prelude::Vector;
 ///
 /// fn wind(mut velocities: Query<&mut Velocity>) {
@@ -27,7 +27,7 @@ use crate::stats::Stats;
 /// }
 ///
 /// let (mut world, mut schedule) = (World::new(), Schedule::default());
-/// bevy::install(&mut world, &mut schedule);
+/// install(&mut world, &mut schedule);
 /// schedule.add_systems(wind.before(PhysicsSystems::SyncBackend));
 /// # schedule.run(&mut world);
 /// ```
