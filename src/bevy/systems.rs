@@ -1,5 +1,6 @@
 //! One step of the schedule.
 
+use bevy_ecs::change_detection::Tick;
 use bevy_ecs::message::{MessageWriter, Messages};
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemChangeTick;
@@ -125,7 +126,7 @@ fn sync(mut context: ResMut<PhysicsContext>, bodies: Query<BodyQuery<'_>, Anythi
             obey(context, entity, &transform, &velocity);
         }
         if let Some(collider) = collider
-            && (collider.is_changed() || context.collider(entity).is_none())
+            && (collider.is_changed() || body.is_changed() && context.collider(entity).is_none())
         {
             context.set_collider(entity, &collider);
         }
@@ -139,12 +140,15 @@ fn obey(
     transform: &Ref<'_, PhysicsTransform>,
     velocity: &Ref<'_, Velocity>,
 ) {
-    // Each system that runs has a tick of its own, so none of the user's is that of `write_back`.
-    let written = context.written;
+    let moved = changed_by_user(transform, context.written);
+    let pushed = changed_by_user(velocity, context.written);
+    if !(moved || pushed) {
+        return;
+    }
     let Some(body) = context.body_mut(entity) else {
         return;
     };
-    if transform.is_changed() && transform.last_changed() != written {
+    if moved {
         let pose = (**transform).into();
         if body.body_type() == RigidBodyType::KinematicPositionBased {
             body.set_next_kinematic_position(pose);
@@ -152,10 +156,15 @@ fn obey(
             body.set_position(pose, true);
         }
     }
-    if velocity.is_changed() && velocity.last_changed() != written {
+    if pushed {
         body.set_linvel(velocity.linear, true);
         body.set_angvel(velocity.angular, true);
     }
+}
+
+/// Each system that runs has a tick of its own, so none of the user's is that of [`write_back`].
+fn changed_by_user<C>(component: &Ref<'_, C>, written: Tick) -> bool {
+    component.is_changed() && component.last_changed() != written
 }
 
 fn step(
