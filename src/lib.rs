@@ -68,6 +68,7 @@
 //! | [`manifold`] | clipping of faces, and the contacts that are kept |
 //! | [`hull_shape`] | a `Shape` that carries its prepared hull |
 //! | [`dispatcher`] | the plug: from parry's shapes and manifolds to queries and back |
+//! | `bevy` | rapier worlds in Bevy's entities (features `bevy`, `bevy_app`) |
 //!
 //! Everything above `hull_shape` works without a physics engine (poses and the hull builder are
 //! parry's):
@@ -97,6 +98,8 @@
 //! ```
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "bevy")]
+pub mod bevy;
 pub mod dispatcher;
 pub mod epa;
 pub mod gjk;

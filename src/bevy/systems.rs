@@ -1,0 +1,193 @@
+//! One step of the schedule.
+
+use bevy_ecs::change_detection::Tick;
+use bevy_ecs::message::{MessageWriter, Messages};
+use bevy_ecs::prelude::*;
+use bevy_ecs::system::SystemChangeTick;
+use rapier3d::prelude::RigidBodyType;
+
+use super::collision::CollisionEvent;
+use super::components::{Collider, PhysicsTransform, RigidBody, Velocity};
+use super::context::PhysicsContext;
+use crate::stats::Stats;
+
+/// The sets of systems that make a step, in their order.
+///
+/// What you change before `SyncBackend` takes part in the step; what you read after `Writeback` is
+/// its outcome. A pose or velocity changed between the two is overwritten.
+///
+/// ```
+/// use bevy_ecs::prelude::*;
+/// use isa_gjk::bevy::{PhysicsSystems, Velocity, install};
+/// use rapier3d::prelude::Vector;
+///
+/// fn wind(mut velocities: Query<&mut Velocity>) {
+///     for mut velocity in &mut velocities {
+///         velocity.linear += Vector::X * 0.01;
+///     }
+/// }
+///
+/// let (mut world, mut schedule) = (World::new(), Schedule::default());
+/// install(&mut world, &mut schedule);
+/// schedule.add_systems(wind.before(PhysicsSystems::SyncBackend));
+/// # schedule.run(&mut world);
+/// ```
+#[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum PhysicsSystems {
+    /// New and changed components go to rapier.
+    SyncBackend,
+    /// The rapier world makes its step.
+    StepSimulation,
+    /// Poses and velocities come back.
+    Writeback,
+}
+
+/// What the dispatcher's queries have cost; nothing, with rapier's default narrow phase.
+///
+/// ```
+/// use bevy_ecs::prelude::*;
+/// use isa_gjk::Stage;
+/// use isa_gjk::bevy::NarrowPhaseStats;
+///
+/// fn watch(stats: Res<NarrowPhaseStats>) {
+///     let warm = stats.last_step.answered[Stage::Feature as usize];
+///     println!("{warm} of {} by their features", stats.last_step.queries());
+/// }
+/// # let mut world = World::new();
+/// # world.init_resource::<NarrowPhaseStats>();
+/// # let mut schedule = Schedule::default();
+/// # schedule.add_systems(watch).run(&mut world);
+/// ```
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct NarrowPhaseStats {
+    /// In the last step.
+    pub last_step: Stats,
+    /// Since the [`PhysicsContext`] was made.
+    pub total: Stats,
+}
+
+/// Adds the resources to `world` and the systems to `schedule`; each run of it is one step.
+///
+/// A [`PhysicsContext`] that is there already is kept. A world is stepped by one schedule: a
+/// second call for the same world does nothing. [`CollisionEvent`]s can be read until the end of
+/// the step after their own.
+pub fn install(world: &mut World, schedule: &mut Schedule) {
+    if world.contains_resource::<Messages<CollisionEvent>>() {
+        return;
+    }
+    world.init_resource::<Messages<CollisionEvent>>();
+    world.init_resource::<PhysicsContext>();
+    world.init_resource::<NarrowPhaseStats>();
+    schedule.add_systems(expire_messages.in_set(PhysicsSystems::SyncBackend));
+    add_systems(schedule);
+}
+
+/// All systems but the one that forgets old messages, which an `App` has already.
+pub(super) fn add_systems(schedule: &mut Schedule) {
+    schedule.configure_sets(
+        (
+            PhysicsSystems::SyncBackend,
+            PhysicsSystems::StepSimulation,
+            PhysicsSystems::Writeback,
+        )
+            .chain(),
+    );
+    schedule.add_systems((
+        sync.in_set(PhysicsSystems::SyncBackend),
+        step.in_set(PhysicsSystems::StepSimulation),
+        write_back.in_set(PhysicsSystems::Writeback),
+    ));
+}
+
+fn expire_messages(mut messages: ResMut<Messages<CollisionEvent>>) {
+    messages.update();
+}
+
+type BodyQuery<'w> = (
+    Entity,
+    Ref<'w, RigidBody>,
+    Option<Ref<'w, Collider>>,
+    Ref<'w, PhysicsTransform>,
+    Ref<'w, Velocity>,
+);
+type AnythingChanged = Or<(
+    Changed<RigidBody>,
+    Changed<Collider>,
+    Changed<PhysicsTransform>,
+    Changed<Velocity>,
+)>;
+
+fn sync(mut context: ResMut<PhysicsContext>, bodies: Query<BodyQuery<'_>, AnythingChanged>) {
+    let context = &mut *context;
+    for (entity, body, collider, transform, velocity) in &bodies {
+        if body.is_changed() {
+            context.set_body(entity, &body, *transform, *velocity);
+        } else {
+            obey(context, entity, &transform, &velocity);
+        }
+        if let Some(collider) = collider
+            && (collider.is_changed() || body.is_changed() && context.collider(entity).is_none())
+        {
+            context.set_collider(entity, &collider);
+        }
+    }
+}
+
+/// Moves a body as the user has moved its entity.
+fn obey(
+    context: &mut PhysicsContext,
+    entity: Entity,
+    transform: &Ref<'_, PhysicsTransform>,
+    velocity: &Ref<'_, Velocity>,
+) {
+    let moved = changed_by_user(transform, context.written);
+    let pushed = changed_by_user(velocity, context.written);
+    if !(moved || pushed) {
+        return;
+    }
+    let Some(body) = context.body_mut(entity) else {
+        return;
+    };
+    if moved {
+        let pose = (**transform).into();
+        if body.body_type() == RigidBodyType::KinematicPositionBased {
+            body.set_next_kinematic_position(pose);
+        } else {
+            body.set_position(pose, true);
+        }
+    }
+    if pushed {
+        body.set_linvel(velocity.linear, true);
+        body.set_angvel(velocity.angular, true);
+    }
+}
+
+/// Each system that runs has a tick of its own, so none of the user's is that of [`write_back`].
+fn changed_by_user<C>(component: &Ref<'_, C>, written: Tick) -> bool {
+    component.is_changed() && component.last_changed() != written
+}
+
+fn step(
+    mut context: ResMut<PhysicsContext>,
+    mut stats: ResMut<NarrowPhaseStats>,
+    mut collisions: MessageWriter<CollisionEvent>,
+) {
+    collisions.write_batch(context.step());
+    let total = context.stats();
+    stats.last_step = total.since(&stats.total);
+    stats.total = total;
+}
+
+fn write_back(
+    mut context: ResMut<PhysicsContext>,
+    ticks: SystemChangeTick,
+    mut bodies: Query<(Entity, &mut PhysicsTransform, &mut Velocity), With<RigidBody>>,
+) {
+    context.written = ticks.this_run();
+    for (entity, mut transform, mut velocity) in &mut bodies {
+        if let Some(body) = context.body_mut(entity) {
+            transform.set_if_neq((*body.position()).into());
+            velocity.set_if_neq((&*body).into());
+        }
+    }
+}
