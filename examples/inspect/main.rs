@@ -55,6 +55,10 @@ struct Options {
     #[arg(long, default_value_t = 0.02)]
     prediction: f64,
 
+    /// Magnifies the contact, or the gap
+    #[arg(long, default_value_t = 1.0, value_parser = at_least_one)]
+    zoom: f64,
+
     /// Where to write the picture
     #[arg(long, default_value = "inspect.svg")]
     out: PathBuf,
@@ -99,7 +103,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let pose = place(attitude, options.frame, options.frames);
     let snapshot = ask([first, second], &pose, memory, &options)?;
     println!("{}", snapshot.summary().join("\n"));
-    fs::write(&options.out, snapshot.draw())
+    fs::write(&options.out, snapshot.draw(options.zoom))
         .map_err(|error| format!("cannot write {}: {error}", options.out.display()))?;
     println!("drawn to {}", options.out.display());
     Ok(())
@@ -145,6 +149,13 @@ fn ask<'a>(
         cost,
         contacts,
     })
+}
+
+fn at_least_one(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "give a number".to_owned())?;
+    (number >= 1.0 && number.is_finite())
+        .then_some(number)
+        .ok_or_else(|| "give 1 or more".to_owned())
 }
 
 fn attitude(random: &mut Rand32) -> Rotation {

@@ -73,13 +73,18 @@ impl Snapshot<'_> {
         lines
     }
 
-    /// The picture.
-    pub fn draw(&self) -> String {
+    /// The picture, magnified around the contact or the gap.
+    pub fn draw(&self, zoom: f64) -> String {
         let points = [0, 1].map(|i| {
             let vertices = 0..self.hulls[i].points().len() as u32;
             vertices.map(move |vertex| self.vertex(i, vertex))
         });
-        let mut canvas = Canvas::new(self.axis(), points.into_iter().flatten());
+        let mut canvas = Canvas::new(
+            self.axis(),
+            points.into_iter().flatten(),
+            self.middle(),
+            zoom,
+        );
         for front in [false, true] {
             (0..2).for_each(|i| self.draw_hull(&mut canvas, i, front));
         }
@@ -211,6 +216,16 @@ impl Snapshot<'_> {
         match &self.answer {
             Answer::Apart(apart) => apart.axis,
             Answer::Near(near) => near.normal,
+        }
+    }
+
+    /// Between the witness points or the extreme vertices.
+    fn middle(&self) -> DVec3 {
+        match &self.answer {
+            Answer::Apart(apart) => self
+                .vertex(0, apart.ids[0])
+                .midpoint(self.vertex(1, apart.ids[1])),
+            Answer::Near(near) => near.on_1.midpoint(near.on_2),
         }
     }
 

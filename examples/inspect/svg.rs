@@ -48,7 +48,7 @@ impl Style {
     }
 }
 
-/// A view, and the elements drawn in it so far.
+/// A view, and what was drawn and written so far.
 pub struct Canvas {
     elements: String,
     right: DVec3,
@@ -60,8 +60,9 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// A view that holds all `points`, with `axis` to the right, a little out of the page.
-    pub fn new(axis: DVec3, points: impl Iterator<Item = DVec3>) -> Self {
+    /// A view that holds all `points`, with `axis` to the right, a little out of the page;
+    /// magnified towards `focus`, if `zoom` is above one.
+    pub fn new(axis: DVec3, points: impl Iterator<Item = DVec3>, focus: DVec3, zoom: f64) -> Self {
         let up = axis.cross(DVec3::Y).cross(axis);
         let up = up.normalize_or(axis.any_orthonormal_vector());
         let aside = axis.cross(up);
@@ -82,8 +83,8 @@ impl Canvas {
             high = high.max(place);
         }
         let room = DVec2::new(TEXT, HEIGHT) - 2.0 * MARGIN;
-        canvas.scale = (room / (high - low)).min_element();
-        canvas.middle = low.midpoint(high);
+        canvas.scale = zoom * (room / (high - low)).min_element();
+        canvas.middle = canvas.flatten(focus).lerp(low.midpoint(high), zoom.recip());
         canvas
     }
 
@@ -126,8 +127,12 @@ impl Canvas {
         ));
     }
 
-    /// Writes lines of text at the top.
+    /// Writes lines of text at the top, over what was drawn too far to the right.
     pub fn note(&mut self, lines: &[String]) {
+        self.add(format_args!(
+            "<rect x=\"{}\" width=\"100%\" height=\"100%\" fill=\"white\"/>",
+            TEXT - 0.5 * MARGIN
+        ));
         for (i, line) in lines.iter().enumerate() {
             let y = 2.0 * MARGIN + LINE_HEIGHT * i as f64;
             self.add(format_args!("<text x=\"{TEXT}\" y=\"{y}\">{line}</text>"));

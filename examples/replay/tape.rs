@@ -1,5 +1,5 @@
-//! What happened in a world, small enough for a web page: poses as 16-bit numbers, as differences
-//! from frame to frame, compressed.
+//! What happened in a world, small enough for a web page: whole numbers, as differences from
+//! frame to frame, compressed.
 
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -13,10 +13,11 @@ use serde_json::{Value, json};
 use crate::mesh;
 use crate::scenes::World;
 
-/// Steps of a 16-bit place.
-const PLACES: Real = 65535.0;
-/// Steps of a 16-bit part of a quaternion, from -1 to 1.
-const TURNS: Real = 32767.0;
+/// Steps of a place from one end of all to the other: below a pixel, and no finer, since noise
+/// does not compress.
+const PLACES: Real = 16383.0;
+/// Steps of a quaternion's part from 0 to 1.
+const TURNS: Real = 4095.0;
 /// Numbers of a pose.
 const POSE: usize = 7;
 
@@ -87,14 +88,14 @@ impl Tape {
             "corners": self.meshes.iter().map(Vec::len).collect::<Vec<_>>(),
             "bodies": self.looks,
             "low": low.to_array(),
-            "size": size.to_array(),
+            "step": (size / PLACES).to_array(),
             "focus": focus.to_array(),
             "extent": extent,
         })
     }
 
-    /// The meshes as f32; the number of contacts of each frame as u32; poses and then contacts as
-    /// 16-bit numbers; little-endian, gzip, base64.
+    /// The meshes as f32; the number of contacts of each frame as u32; the low bytes of poses and
+    /// contacts, then the high bytes of both. Little-endian, gzip, base64.
     pub fn encode(&self) -> io::Result<String> {
         let mut file = GzEncoder::new(Vec::new(), Compression::best());
         for corner in self.meshes.iter().flatten() {
@@ -105,34 +106,45 @@ impl Tape {
         for frame in &self.frames {
             file.write_all(&(frame.contacts.len() as u32).to_le_bytes())?;
         }
+        // The high bytes are nearly all alike, and vanish when they come together.
+        let numbers = self.numbers();
+        for byte in [0, 1] {
+            let bytes: Vec<u8> = numbers.iter().map(|n| n.to_le_bytes()[byte]).collect();
+            file.write_all(&bytes)?;
+        }
+        Ok(BASE64_STANDARD.encode(file.finish()?))
+    }
+
+    /// All poses, as differences from the frame before, and then all contacts.
+    fn numbers(&self) -> Vec<u16> {
         let (low, size) = self.bounds();
         let place = |p: Vector| {
             ((p - low) / size * PLACES)
                 .to_array()
                 .map(|x| x.round() as u16)
         };
+        let mut numbers = Vec::new();
         let mut before = vec![[0_u16; POSE]; self.colliders.len()];
         for frame in &self.frames {
             for (pose, before) in frame.poses.iter().zip(&mut before) {
                 let [x, y, z] = place(pose.translation);
-                // Casts to i16 and back keep the sign; differences wrap around.
+                // A negative number wraps around, as differences do.
                 let turn = pose
                     .rotation
                     .to_array()
                     .map(|q| (q * TURNS).round() as i16 as u16);
                 let now = [x, y, z, turn[0], turn[1], turn[2], turn[3]];
-                for (now, before) in now.iter().zip(before) {
-                    file.write_all(&now.wrapping_sub(*before).to_le_bytes())?;
-                    *before = *now;
-                }
+                numbers.extend(
+                    now.iter()
+                        .zip(*before)
+                        .map(|(now, before)| now.wrapping_sub(before)),
+                );
+                *before = now;
             }
         }
-        for contact in self.frames.iter().flat_map(|frame| &frame.contacts) {
-            for coordinate in place(*contact) {
-                file.write_all(&coordinate.to_le_bytes())?;
-            }
-        }
-        Ok(BASE64_STANDARD.encode(file.finish()?))
+        let contacts = self.frames.iter().flat_map(|frame| &frame.contacts);
+        numbers.extend(contacts.flat_map(|contact| place(*contact)));
+        numbers
     }
 
     /// The box of all places, as its lowest corner and its size.
@@ -175,16 +187,12 @@ fn is_dynamic(world: &World, collider: &Collider) -> bool {
     parent.is_some_and(|body| body.is_dynamic())
 }
 
-/// The contact points of a pair in the world, on its first collider.
+/// The points where a pair touches, in the world, on its first collider.
 fn contacts<'a>(world: &'a World, pair: &'a ContactPair) -> impl Iterator<Item = Vector> + 'a {
-    let reach = world.physics.integration_parameters.prediction_distance();
     let pose = world.physics.colliders[pair.collider1].position();
     pair.manifolds().iter().flat_map(move |manifold| {
         let part = manifold.subshape_pos1().copied().unwrap_or(Pose::IDENTITY);
-        let near = manifold
-            .points
-            .iter()
-            .filter(move |point| point.dist < reach);
-        near.map(move |point| pose.transform_point(part.transform_point(point.local_p1)))
+        let touching = manifold.points.iter().filter(|point| point.dist <= 0.0);
+        touching.map(move |point| pose.transform_point(part.transform_point(point.local_p1)))
     })
 }
