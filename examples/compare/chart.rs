@@ -24,9 +24,10 @@ const SHOWN: f64 = 0.99;
 const PALE: f64 = 0.35;
 /// Room above the highest value that is shown.
 const HEADROOM: f64 = 1.2;
-/// Lengths of a dash and of the gap after it, ten together.
-const SOLID: (u32, u32) = (10, 0);
-const DASHED: (u32, u32) = (5, 5);
+/// Lengths of a dash and of the gap after it.
+const DASH: (u32, u32) = (6, 4);
+/// The same on a logarithmic axis, where the legend needs it.
+const LEGEND: f64 = 3.0;
 /// Length of a line in the legend.
 const KEY: i32 = 30;
 
@@ -102,12 +103,15 @@ pub fn sweep(path: &Path, sweep: &Sweep) -> Result<(), Box<dyn Error>> {
     };
     // A logarithmic axis has no zero.
     let low = times().fold(f64::INFINITY, f64::min).max(1e-3) / HEADROOM;
-    let high = times().fold(2.0 * low, f64::max) * HEADROOM;
+    let high = times().fold(2.0 * low, f64::max) * LEGEND;
     let vertices = || sweep.rows.iter().map(|row| f64::from(row.vertices));
     let most = vertices().fold(1.0, f64::max);
     let least = vertices().fold(most, f64::min);
 
-    let title = format!("{}, {} bodies", sweep.scene, sweep.bodies);
+    let title = format!(
+        "{}, {} bodies; dashed: recycling off",
+        sweep.scene, sweep.bodies
+    );
     let area = blank(path, &title)?;
     let mut chart = ChartBuilder::on(&area)
         .margin(12)
@@ -134,18 +138,14 @@ pub fn sweep(path: &Path, sweep: &Sweep) -> Result<(), Box<dyn Error>> {
                 .map(|row| (f64::from(row.vertices), time(row).max(low)))
                 .collect();
             let style = colour.stroke_width(2);
-            let (dash, gap) = if recycling { SOLID } else { DASHED };
-            chart
-                .draw_series(DashedLineSeries::new(line, dash, gap, style))?
-                .label(if recycling {
-                    name.to_owned()
-                } else {
-                    format!("{name}, recycling off")
-                })
-                .legend(move |at| {
-                    let nth = |i| PathElement::new([(i * 10, 0), (i * 10 + dash as i32, 0)], style);
-                    EmptyElement::at(at) + nth(0) + nth(1) + nth(2)
-                });
+            if recycling {
+                chart
+                    .draw_series(LineSeries::new(line, style))?
+                    .label(name)
+                    .legend(move |(x, y)| PathElement::new([(x, y), (x + KEY, y)], style));
+            } else {
+                chart.draw_series(DashedLineSeries::new(line, DASH.0, DASH.1, style))?;
+            }
         }
     }
     chart

@@ -187,12 +187,15 @@ fn is_dynamic(world: &World, collider: &Collider) -> bool {
     parent.is_some_and(|body| body.is_dynamic())
 }
 
-/// The points where a pair touches, in the world, on its first collider.
+/// The points where a pair pushes, in the world, on its first collider.
 fn contacts<'a>(world: &'a World, pair: &'a ContactPair) -> impl Iterator<Item = Vector> + 'a {
     let pose = world.physics.colliders[pair.collider1].position();
     pair.manifolds().iter().flat_map(move |manifold| {
         let part = manifold.subshape_pos1().copied().unwrap_or(Pose::IDENTITY);
-        let touching = manifold.points.iter().filter(|point| point.dist <= 0.0);
-        touching.map(move |point| pose.transform_point(part.transform_point(point.local_p1)))
+        let pushing = manifold
+            .points
+            .iter()
+            .filter(|point| point.data.impulse > 0.0);
+        pushing.map(move |point| pose.transform_point(part.transform_point(point.local_p1)))
     })
 }
