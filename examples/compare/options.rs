@@ -82,7 +82,7 @@ pub struct Options {
     #[arg(long, value_enum, conflicts_with_all = ["vertices", "sides", "recycling", "hull_shape", "verify"])]
     pub sweep: Option<Sweep>,
 
-    /// Check so many of the contact manifolds that the world of isa-gjk keeps, drawn at random over
+    /// Check about so many of the contact manifolds that the world of isa-gjk keeps, drawn at random over
     /// the run: each is brought to the present poses, warm from what it remembers and cold from
     /// nothing. Both must have the same depth; the shapes must be that far apart along its normal by
     /// parry's support functions; and no direction that parry's own contact finds may separate
