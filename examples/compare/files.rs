@@ -4,8 +4,9 @@ use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
+use serde::Serialize;
+
 use crate::measure::{Frame, Run};
-use crate::report::Report;
 
 /// Creates the file at `path`, if there is to be one.
 pub fn create(path: Option<&Path>) -> Result<Option<BufWriter<File>>, String> {
@@ -18,8 +19,8 @@ pub fn create(path: Option<&Path>) -> Result<Option<BufWriter<File>>, String> {
 }
 
 /// Writes the figures of the table.
-pub fn write_json(mut file: BufWriter<File>, report: &Report) -> io::Result<()> {
-    serde_json::to_writer_pretty(&mut file, report)?;
+pub fn write_json(mut file: BufWriter<File>, figures: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut file, figures)?;
     writeln!(file)?;
     file.flush()
 }

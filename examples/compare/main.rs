@@ -1,14 +1,19 @@
 //! Steps two equal rapier worlds in turn, one with rapier's own narrow phase and one with
 //! `isa-gjk`, and tells what each cost: `cargo run --release --example compare -- --help`.
 
+mod chart;
 mod files;
 mod measure;
 mod options;
 mod report;
 mod scenes;
+mod sweep;
+mod verify;
 
 use std::error::Error;
-use std::io::{self, Write};
+use std::fmt::Display;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -16,9 +21,15 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use options::Options;
 use report::Report;
+use sweep::Sweep;
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
+    let options = Options::parse();
+    let outcome = match options.sweep {
+        None => compare(&options),
+        Some(options::Sweep::Vertices) => sweep(&options),
+    };
+    match outcome {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
             eprintln!("error: {error}");
@@ -27,38 +38,82 @@ fn main() -> ExitCode {
     }
 }
 
-fn run(options: &Options) -> Result<(), Box<dyn Error>> {
-    let params = options.scene_params()?;
+fn compare(options: &Options) -> Result<(), Box<dyn Error>> {
+    let params = options.scene_params(options.vertices)?;
     let length = options.run_length();
-    let progress = progress_bar(options, length.steps());
     // Before the run, so that a wrong path does not cost it.
-    let json = files::create(options.json.as_deref())?;
-    let csv = files::create(options.csv.as_deref())?;
-    let mut runs = Vec::new();
-    for _ in 0..options.repeat {
-        runs.push(measure::run(options.scene, &params, length, &progress)?);
-    }
+    let outputs = Outputs::create(options)?;
+    let progress = progress_bar(options, length.steps() * u64::from(options.repeat));
+    let runs = (0..options.repeat)
+        .map(|_| measure::run(options.scene, &params, length, &progress))
+        .collect::<Result<Vec<_>, _>>()?;
     progress.finish_and_clear();
 
     let report = Report::new(options.scene, &params, length, &runs);
-    if let Some(file) = json {
+    if let Some(file) = outputs.json {
         files::write_json(file, &report)?;
     }
-    if let Some(file) = csv {
+    if let Some(file) = outputs.csv {
         files::write_csv(file, &runs)?;
     }
-    match write!(io::stdout().lock(), "{report}") {
+    if let Some(path) = &options.chart {
+        chart::frames(path, &report.title(), &runs)?;
+    }
+    print(&report)?;
+    match report.failed_check() {
+        true => Err("a manifold is off by more than the limit: see the table".into()),
+        false => Ok(()),
+    }
+}
+
+fn sweep(options: &Options) -> Result<(), Box<dyn Error>> {
+    let outputs = Outputs::create(options)?;
+    let progress = progress_bar(options, Sweep::steps(options));
+    let sweep = Sweep::run(options, &progress)?;
+    progress.finish_and_clear();
+
+    if let Some(file) = outputs.json {
+        files::write_json(file, &sweep)?;
+    }
+    if let Some(file) = outputs.csv {
+        sweep.write_csv(file)?;
+    }
+    if let Some(path) = &options.chart {
+        chart::sweep(path, &sweep)?;
+    }
+    print(&sweep)
+}
+
+/// The files that are asked for.
+struct Outputs {
+    json: Option<BufWriter<File>>,
+    csv: Option<BufWriter<File>>,
+}
+
+impl Outputs {
+    fn create(options: &Options) -> Result<Self, String> {
+        // The chart is written by its name; this proves that it can be.
+        files::create(options.chart.as_deref())?;
+        Ok(Self {
+            json: files::create(options.json.as_deref())?,
+            csv: files::create(options.csv.as_deref())?,
+        })
+    }
+}
+
+fn print(table: &impl Display) -> Result<(), Box<dyn Error>> {
+    match write!(io::stdout().lock(), "{table}") {
         // Whoever reads us has seen enough, as `head` does.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         result => Ok(result?),
     }
 }
 
-fn progress_bar(options: &Options, steps_per_run: u64) -> ProgressBar {
+fn progress_bar(options: &Options, steps: u64) -> ProgressBar {
     if options.quiet {
         return ProgressBar::hidden();
     }
-    let bar = ProgressBar::new(steps_per_run * u64::from(options.repeat));
+    let bar = ProgressBar::new(steps);
     match ProgressStyle::with_template("{wide_bar} {pos}/{len} steps, {eta} left") {
         Ok(style) => bar.with_style(style),
         Err(_) => bar,

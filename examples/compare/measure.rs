@@ -5,6 +5,7 @@ use isa_gjk::{IsaGjkDispatcher, Stats};
 use rapier3d::prelude::{ContactPair, Real};
 
 use crate::scenes::{self, Scene, SceneParams, World};
+use crate::verify::{Verified, Verifier};
 
 /// Frames that one world steps before it is the other's turn.
 pub const BLOCK: usize = 8;
@@ -16,6 +17,8 @@ pub struct RunLength {
     pub warmup: usize,
     /// Frames after that.
     pub frames: usize,
+    /// Manifolds to check meanwhile.
+    pub verify: u32,
 }
 
 impl RunLength {
@@ -78,6 +81,8 @@ pub struct Run {
     pub ours: Side,
     /// What our queries cost after the warm-up.
     pub stats: Stats,
+    /// What the checks of our manifolds found, if there were to be any.
+    pub verified: Option<Verified>,
 }
 
 /// Builds both worlds and steps them, block by block in turn.
@@ -98,16 +103,23 @@ pub fn run(
         }
     });
     let before = dispatcher.stats();
+    let blocks = length.frames.div_ceil(BLOCK);
+    let mut verifier = (length.verify > 0).then(|| Verifier::new(length.verify, blocks));
     in_blocks(length.frames, |frames| {
         for recorder in [&mut default, &mut ours] {
             (0..frames).for_each(|frame| recorder.step(frame > 0));
             progress.inc(frames as u64);
+        }
+        // Between blocks: the frame that finds its data evicted by this is not counted.
+        if let Some(verifier) = &mut verifier {
+            verifier.check(&ours.world);
         }
     });
     Ok(Run {
         default: default.finish(),
         ours: ours.finish(),
         stats: dispatcher.stats().since(&before),
+        verified: verifier.map(|verifier| verifier.found),
     })
 }
 

@@ -33,7 +33,7 @@ pub struct Options {
 
     /// Vertices of a random hull or of a prism
     #[arg(long, default_value_t = 100, value_parser = value_parser!(u32).range(4..=20_000))]
-    vertices: u32,
+    pub vertices: u32,
 
     /// How many different hulls the scene has [default: 16, or all of the real ones]
     #[arg(long, value_parser = value_parser!(u32).range(1..=100_000))]
@@ -71,6 +71,26 @@ pub struct Options {
     #[arg(long)]
     pub csv: Option<PathBuf>,
 
+    /// Draw the narrow phase's time in every frame of both worlds as an SVG picture (the median
+    /// over the repeats); with --sweep, the time per pair over the sweep
+    #[arg(long)]
+    pub chart: Option<PathBuf>,
+
+    /// Measure the scene at vertex counts from 8 to 1024 instead, with recycling and without, as
+    /// plain hulls and as `HullShape`s, and print the narrow phase's time per contact pair; --json
+    /// and --csv write these figures. Takes a median over the --repeat runs of each
+    #[arg(long, value_enum, conflicts_with_all = ["vertices", "sides", "recycling", "hull_shape", "verify"])]
+    pub sweep: Option<Sweep>,
+
+    /// Check about so many of the contact manifolds that the world of isa-gjk keeps, drawn at random over
+    /// the run: each is brought to the present poses, warm from what it remembers and cold from
+    /// nothing. Both must have the same depth; the shapes must be that far apart along its normal by
+    /// parry's support functions; and no direction that parry's own contact finds may separate
+    /// them better. Ends with an error if one of these is off by more than 1e-5 of the larger
+    /// shape's diameter
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub verify: u32,
+
     /// Show no progress bar
     #[arg(long)]
     pub quiet: bool,
@@ -80,6 +100,13 @@ pub struct Options {
 enum Switch {
     On,
     Off,
+}
+
+/// What a sweep varies.
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Sweep {
+    /// The vertices of a hull.
+    Vertices,
 }
 
 #[derive(Clone)]
@@ -105,9 +132,9 @@ impl FromStr for Shape {
 }
 
 impl Options {
-    /// What to build.
-    pub fn scene_params(&self) -> Result<SceneParams, String> {
-        let hulls = self.hull_source()?;
+    /// What to build, of hulls with so many vertices.
+    pub fn scene_params(&self, vertices: u32) -> Result<SceneParams, String> {
+        let hulls = self.hull_source(vertices)?;
         let all_real = if hulls == HullSource::Real {
             u32::MAX
         } else {
@@ -128,10 +155,11 @@ impl Options {
         RunLength {
             warmup: self.warmup as usize,
             frames: self.frames as usize,
+            verify: self.verify,
         }
     }
 
-    fn hull_source(&self) -> Result<HullSource, String> {
+    fn hull_source(&self, vertices: u32) -> Result<HullSource, String> {
         let shape = match (&self.shape, self.scene.hulls()) {
             (Some(shape), Hulls::Any) => shape,
             (None | Some(Shape::Prism), Hulls::Prisms) => &Shape::Prism,
@@ -147,13 +175,11 @@ impl Options {
             return Err("--sides is for prisms: add --shape prism".to_owned());
         }
         Ok(match shape {
-            Shape::Random => HullSource::Random {
-                vertices: self.vertices,
-            },
+            Shape::Random => HullSource::Random { vertices },
             Shape::Prism => HullSource::Prism {
                 sides: self.sides.unwrap_or(match self.scene {
                     Scene::Coins => 64,
-                    _ => (self.vertices / 2).max(3),
+                    _ => (vertices / 2).max(3),
                 }),
             },
             Shape::Real => HullSource::Real,

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::measure::{BLOCK, Frame, Run, RunLength, Side};
 use crate::scenes::{Hulls, Scene, SceneParams};
+use crate::verify::Verified;
 
 /// Everything the table shows.
 #[derive(Serialize)]
@@ -30,6 +31,9 @@ pub struct Report {
     repeatable: bool,
     /// What our queries cost in the first run.
     queries: Queries,
+    /// What became of the manifolds that were checked in the first run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    verified: Option<Verified>,
 }
 
 /// One row of the table.
@@ -78,7 +82,18 @@ impl Report {
             our_pose_hash: format!("{:016x}", first.ours.pose_hash),
             repeatable: runs.iter().all(|run| hashes(run) == hashes(first)),
             queries: Queries::new(&first.stats),
+            verified: first.verified,
         }
+    }
+
+    /// What was compared, in a few words.
+    pub fn title(&self) -> String {
+        format!("{}: {} bodies, {}", self.scene, self.bodies, self.hulls)
+    }
+
+    /// Whether a manifold was checked and found wrong.
+    pub fn failed_check(&self) -> bool {
+        self.verified.is_some_and(|verified| verified.failed())
     }
 }
 
@@ -151,7 +166,7 @@ impl Queries {
 }
 
 /// The median over the counted frames.
-fn per_frame(side: &Side, of: impl Fn(&Frame) -> f64) -> f64 {
+pub fn per_frame(side: &Side, of: impl Fn(&Frame) -> f64) -> f64 {
     let counted = side.frames.iter().filter(|frame| frame.counted);
     quantile(counted.map(of).collect(), 0.5)
 }
@@ -164,7 +179,7 @@ fn depth(side: &Side, share: f64) -> f64 {
 }
 
 /// The value that a `share` of the others do not exceed; zero if there are none.
-fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
+pub fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
     let Some(last) = values.len().checked_sub(1) else {
         return 0.0;
     };
@@ -209,7 +224,11 @@ impl fmt::Display for Report {
                 "the repeats ended in different poses: the worlds are not deterministic"
             )?;
         }
-        write!(f, "\n{}", self.queries)
+        write!(f, "\n{}", self.queries)?;
+        match &self.verified {
+            Some(verified) => write!(f, "\n{verified}"),
+            None => Ok(()),
+        }
     }
 }
 
