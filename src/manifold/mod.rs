@@ -151,32 +151,42 @@ pub fn half_space_contacts(
     if shape.face_normal(face).dot(normal) <= EDGE_ON {
         return contacts;
     }
+    let distance = |corner: DVec3| proximity.signed_distance - (corner - origin).dot(normal);
+    let contact = |vertex| {
+        let on_1 = shape.vertex(vertex);
+        let distance = distance(on_1);
+        ContactPoint {
+            on_1,
+            on_2: on_1 + normal * distance,
+            distance,
+            features: [Feature::Vertex(vertex), proximity.features[1]],
+        }
+    };
+    let count = shape.face_len(face);
+    let corner = |i: usize| shape.face_vertex(face, i);
+    if count <= MAX_POINTS {
+        let others = (0..count).map(corner);
+        let others = others.filter(|&v| proximity.features[0] != Feature::Vertex(v));
+        for vertex in others.take(MAX_POINTS - 1) {
+            contacts.push(contact(vertex));
+        }
+        return contacts;
+    }
     let u = normal.any_orthonormal_vector();
     let v = normal.cross(u);
     scratch.polygon.clear();
-    scratch.polygon.extend((0..shape.face_len(face)).map(|i| {
-        let corner = shape.vertex(shape.face_vertex(face, i)) - origin;
-        let mut vertex = ClipVertex::corner(DVec2::new(corner.dot(u), corner.dot(v)), i);
-        vertex.distance = proximity.signed_distance - corner.dot(normal);
+    scratch.polygon.extend((0..count).map(|i| {
+        let place = shape.vertex(corner(i)) - origin;
+        let mut vertex = ClipVertex::corner(DVec2::new(place.dot(u), place.dot(v)), i);
+        vertex.distance = distance(shape.vertex(corner(i)));
         vertex
     }));
     let (corners, beyond) = reduce::split(&mut scratch.polygon, max_distance);
-    let same = SAME_POINT * shape.radius();
-    let room = MAX_POINTS - 1;
-    let spread = reduce::spread(corners, DVec2::ZERO, same);
-    for vertex in spread.chain(beyond).take(room) {
-        let foot = origin + u * vertex.at.x + v * vertex.at.y;
-        let on_2 = foot + normal * proximity.signed_distance;
-        let Tag::Corner(i) = vertex.tag else { continue };
-        contacts.push(ContactPoint {
-            on_1: on_2 - normal * vertex.distance,
-            on_2,
-            distance: vertex.distance,
-            features: [
-                Feature::Vertex(shape.face_vertex(face, i.into())),
-                proximity.features[1],
-            ],
-        });
+    let spread = reduce::spread(corners, DVec2::ZERO, SAME_POINT * shape.radius());
+    for vertex in spread.chain(beyond).take(MAX_POINTS - 1) {
+        if let Tag::Corner(i) = vertex.tag {
+            contacts.push(contact(corner(i.into())));
+        }
     }
     contacts
 }
