@@ -20,7 +20,7 @@
 //!   holds (`as_typed_shape`): that is what is serialized. A loaded world has plain hulls in
 //!   the place of `HullShape`s and works without this crate. With our dispatcher it goes on as
 //!   before, but for the rounding of bounding boxes and for pairs that parry answers (with
-//!   balls, half-spaces and other smooth shapes), whose contact points may differ as said above.
+//!   cylinders and cones), whose contact points may differ as said above.
 //!   To get `HullShape`s back, see [`TryFrom`].
 //! - **Debug rendering** draws the polyhedron's edges, for the same reason.
 //! - **Continuous collision detection** sweeps the polyhedron's points, as it does those of a
@@ -34,8 +34,9 @@
 //! - Rounded borders are for plain hulls: use `SharedShape::round_convex_hull`.
 //!
 //! # Memory
-//! The polyhedron costs about 250 bytes per vertex and the prepared hull 100. A plain collider
-//! costs the same where our dispatcher answers, and the latter once per thread.
+//! The polyhedron costs about 250 bytes per vertex and the prepared hull at most about 140
+//! ([`Hull::heap_bytes`]). A plain collider costs the same where our dispatcher answers, and the
+//! latter once per thread.
 
 mod bounds;
 mod features;
@@ -101,8 +102,7 @@ impl HullShape {
     /// # Errors
     /// Names what is wrong with the points, see [`HullError`].
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
-        let (vertices, triangles) = hull::surface(points)?;
-        Self::from_triangles(vertices, &triangles)
+        hull::surround(points, Self::from_triangles)
     }
 
     /// From the triangulated surface of a convex polytope, counter-clockwise from outside.
@@ -173,7 +173,7 @@ impl TryFrom<ConvexPolyhedron> for HullShape {
     fn try_from(polyhedron: ConvexPolyhedron) -> Result<Self, HullError> {
         // From the polyhedron even where the triangles are known: that is what the dispatcher
         // does with the plain hull of a loaded world, whose features keep their names by it.
-        let hull = topology::hull_of(&polyhedron)?;
+        let hull = Hull::try_from(&polyhedron)?;
         let parts = Parts {
             local_aabb: polyhedron.local_aabb(),
             mass: MassProperties::from_convex_polyhedron(1.0, hull.points(), &triangles(&hull)),

@@ -40,6 +40,17 @@ impl RelativePose {
         }
     }
 
+    /// That of the other shape in the frame of the kernels' first one, which is the pair's second
+    /// if they are `swapped`. The pose is [valid](Self::is_valid).
+    #[inline(always)]
+    pub(crate) fn of_first(pos12: &Pose, swapped: bool) -> Self {
+        if swapped {
+            Self::from_valid(pos12).inverse()
+        } else {
+            Self::from_valid(pos12)
+        }
+    }
+
     /// Whether a pose is finite and its quaternion has a direction.
     #[inline]
     pub fn is_valid(pos12: &Pose) -> bool {

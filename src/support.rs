@@ -17,13 +17,22 @@ pub trait Support {
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId);
 
     /// A start for [`support`](Self::support) when no similar query is known.
-    fn start(&self, dir: DVec3) -> VertexId;
+    #[inline]
+    fn start(&self, _dir: DVec3) -> VertexId {
+        0
+    }
 
     /// `vertex` if the shape has it, else some vertex that it has.
-    fn valid_start(&self, vertex: VertexId) -> VertexId;
+    #[inline]
+    fn valid_start(&self, _vertex: VertexId) -> VertexId {
+        0
+    }
 
     /// A point inside, off the boundary wherever the shape has volume.
-    fn center(&self) -> DVec3;
+    #[inline]
+    fn center(&self) -> DVec3 {
+        DVec3::ZERO
+    }
 
     /// The largest distance of a point from [`center`](Self::center).
     fn radius(&self) -> f64;
@@ -43,7 +52,8 @@ pub trait Polytope: Support {
     /// Whether there is such a face.
     fn has_face(&self, face: FaceId) -> bool;
 
-    /// The outward unit normal of a face; zero for a sliver that has no plane of the shape.
+    /// The outward unit normal of a face; zero for a sliver that has no plane of the shape, and
+    /// for the one face of a point or a segment.
     fn face_normal(&self, face: FaceId) -> DVec3;
 
     /// The largest `normal · p` over the shape.

@@ -2,6 +2,7 @@
 
 mod common;
 
+use std::f64::consts::TAU;
 use std::time::Instant;
 
 use common::generate::Dice;
@@ -94,7 +95,6 @@ fn points_without_volume() {
     assert_eq!(refusal(flat.clone(), &TETRAHEDRON), HullError::Flat);
     flat[3].z = 1.0e-8;
     assert_eq!(refusal(flat, &TETRAHEDRON), HullError::Flat);
-    assert_eq!(refusal(vec![Vec3::ONE; 4], &TETRAHEDRON), HullError::Flat);
 }
 
 #[test]
@@ -116,10 +116,26 @@ fn vertices_that_belong_to_no_triangle() {
     let mut points = corners();
     points.push(Vec3::splat(0.1));
     assert_eq!(refusal(points, &TETRAHEDRON), HullError::LooseVertex(4));
-    // A duplicate is one too: it is not a second corner.
-    let mut points = corners();
-    points.push(Vec3::X);
-    assert_eq!(refusal(points, &TETRAHEDRON), HullError::LooseVertex(4));
+}
+
+#[test]
+fn vertices_that_are_there_twice() {
+    // Each triangle with corners of its own, as mesh files have them.
+    let soup: Vec<Vec3> = TETRAHEDRON
+        .as_flattened()
+        .iter()
+        .map(|&v| corners()[v as usize])
+        .collect();
+    let apart = [[0, 1, 2], [3, 4, 5], [6, 7, 8], [9, 10, 11]];
+    assert_eq!(refusal(soup, &apart), HullError::DuplicateVertex(3));
+    // An unused one, and one whose zeros have other signs.
+    for again in [Vec3::X, Vec3::new(1.0, -0.0, -0.0)] {
+        let mut points = corners();
+        points.push(again);
+        assert_eq!(refusal(points, &TETRAHEDRON), HullError::DuplicateVertex(4));
+    }
+    let same_point = refusal(vec![Vec3::ONE; 4], &TETRAHEDRON);
+    assert_eq!(same_point, HullError::DuplicateVertex(1));
 }
 
 #[test]
@@ -225,6 +241,7 @@ fn every_error_says_what_is_wrong() {
         HullError::NotFinite(7),
         HullError::Flat,
         HullError::BadTriangle(7),
+        HullError::DuplicateVertex(7),
         HullError::LooseVertex(7),
         HullError::NotManifold,
         HullError::InsideOut,
@@ -290,6 +307,30 @@ fn a_needle_of_boxes_edges_is_built() {
         assert_eq!((hull.points().len(), hull.face_count()), (8, 6), "{half}");
         for face in 0..6 {
             assert_eq!(hull.face_len(face), 4);
+        }
+    }
+}
+
+#[test]
+fn flat_bipyramids_are_built_however_they_lie() {
+    let mut dice = Dice::new(64);
+    for size in [1.0e-3, 1.0, 30.0] {
+        for height in [1.0e-2, 1.0e-3, 1.0e-4] {
+            for corners in [5, 64] {
+                let turn = dice.rotation();
+                let rim = (0..corners).map(|i| {
+                    let (sin, cos) = (TAU * f64::from(i) / f64::from(corners)).sin_cos();
+                    DVec3::new(cos, sin, 0.0)
+                });
+                let tips = [DVec3::Z * height, -DVec3::Z * height];
+                let points: Vec<Vec3> = rim
+                    .chain(tips)
+                    .map(|p| (turn * p * size).as_vec3())
+                    .collect();
+                let what = format!("{corners} corners, {size} m, height {height}");
+                let hull = Hull::from_points(&points).unwrap_or_else(|e| panic!("{what}: {e}"));
+                assert_eq!(hull.points().len(), points.len(), "{what}");
+            }
         }
     }
 }

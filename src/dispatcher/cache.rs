@@ -4,8 +4,9 @@
 //! and cost rapier nothing; a workspace would make it rebuild its solver graph every step. So
 //! the memory is written where the manifold has room, in words that mean what they say:
 //!
-//! - without points, `local_n1` is the separating axis (parry's own habit), and `local_n2`, which
-//!   nobody reads then, holds the two extreme vertices as whole numbers;
+//! - without points, `local_n1` is the separating axis (parry's own habit) in the frame of the
+//!   kernels' first shape, and `local_n2`, which nobody reads then, holds the two extreme vertices
+//!   as whole numbers;
 //! - with points, `local_n1` is the contact normal, and the feature ids of the first point name
 //!   the features in contact.
 //!
@@ -20,10 +21,15 @@ use crate::query::{self, Feature, Memory, Proximity};
 use crate::support::{Cso, Polytope};
 use crate::tolerance::UNIT_NORMAL;
 
-/// Reads what the previous frame left.
+/// Reads what the previous frame left. `swapped`: the manifold's second shape is the kernels' first.
 #[inline]
-pub(super) fn read<M, C>(manifold: &ContactManifold<M, C>) -> Memory {
-    let Some(axis) = unit(manifold.local_n1) else {
+pub(super) fn read<M, C>(manifold: &ContactManifold<M, C>, swapped: bool) -> Memory {
+    let stored = if swapped && !manifold.points.is_empty() {
+        manifold.local_n2
+    } else {
+        manifold.local_n1
+    };
+    let Some(axis) = unit(stored) else {
         return Memory::None;
     };
     match manifold.points.first() {
@@ -33,7 +39,7 @@ pub(super) fn read<M, C>(manifold: &ContactManifold<M, C>) -> Memory {
             Memory::Axis(axis, [n2.x as u32, n2.y as u32])
         }
         Some(point) => match (unpack(point.fid1), unpack(point.fid2)) {
-            (Some(f1), Some(f2)) => Memory::Contact(axis, [f1, f2]),
+            (Some(f1), Some(f2)) => Memory::Contact(axis, ordered([f1, f2], swapped)),
             _ => Memory::Axis(axis, [0, 0]),
         },
     }
@@ -59,6 +65,12 @@ pub(super) fn write_start<A: Polytope, B: Polytope, M, C>(
         ids: query::vertices(cso, near.features),
     };
     write_axis(manifold, &start);
+}
+
+/// What belongs to the two shapes of a pair, from the kernels' order to the manifold's or back.
+#[inline]
+pub(super) fn ordered<T>([a, b]: [T; 2], swapped: bool) -> [T; 2] {
+    if swapped { [b, a] } else { [a, b] }
 }
 
 /// A vector that is a unit vector up to rounding, or nothing. (Separations along it are then right

@@ -1,15 +1,17 @@
 //! The contact manifold of two convex shapes, coherently.
 
+use glam::DVec3;
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::query::{ContactManifold, TrackedContact};
 
-use super::cache;
 use super::pair::{PairVisitor, Scratch};
+use super::{cache, half_space};
+use crate::hull::Hull;
 use crate::manifold::{self, Contacts};
 use crate::pose::RelativePose;
 use crate::query::{Answer, Proximity, Query};
-use crate::stats::{Cost, SharedStats};
+use crate::stats::{Cost, SharedStats, Stage};
 use crate::support::{Cso, Polytope};
 
 /// Corrected normals of mesh edges can turn a deep overlap into an absurd depth along a face
@@ -31,20 +33,21 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
     type Output = Option<()>;
 
     #[inline]
-    fn visit<A: Polytope, B: Polytope>(
+    fn visit<B: Polytope>(
         self,
-        shape_1: &A,
-        shape_2: &B,
+        hull: &Hull,
+        other: &B,
         borders: [f64; 2],
+        swapped: bool,
         scratch: &mut Scratch<'_>,
     ) -> Option<()> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
         }
-        let pose = RelativePose::from_valid(self.pos12);
+        let pose = RelativePose::of_first(self.pos12, swapped);
         let cso = Cso {
-            shape_1,
-            shape_2,
+            shape_1: hull,
+            shape_2: other,
             pose: &pose,
         };
         let max_distance = f64::from(self.prediction) + borders[0] + borders[1];
@@ -55,28 +58,65 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             scratch: scratch.epa,
             cost: &mut cost,
         }
-        .run(&cache::read(self.manifold))?;
+        .run(&cache::read(self.manifold, swapped))?;
         self.stats.record(stage, &cost);
         match answer {
             Answer::Apart(apart) => cache::write_axis(self.manifold, &apart),
-            Answer::Near(near) => self.write_contacts(&cso, &near, max_distance, borders, scratch),
+            Answer::Near(near) => {
+                self.write_contacts(&cso, &near, max_distance, borders, swapped, scratch);
+            }
+        }
+        Some(())
+    }
+
+    fn visit_half_space(
+        self,
+        hull: &Hull,
+        normal: DVec3,
+        border: f64,
+        swapped: bool,
+        scratch: &mut Scratch<'_>,
+    ) -> Option<()> {
+        if !RelativePose::is_valid(self.pos12) {
+            return None;
+        }
+        let pose = RelativePose::of_first(self.pos12, swapped);
+        let max_distance = f64::from(self.prediction) + border;
+        let mut cost = Cost::default();
+        let memory = cache::read(self.manifold, swapped);
+        let near = half_space::deepest(hull, normal, &pose, &memory, &mut cost);
+        if near.signed_distance > max_distance {
+            self.stats.record(Stage::Axis, &cost);
+            cache::write_axis(self.manifold, &half_space::axis(&near));
+        } else {
+            self.stats.record(Stage::Feature, &cost);
+            let contacts = manifold::half_space_contacts(hull, &near, max_distance, scratch.clip);
+            let [n1, n2] = cache::ordered(normals(&near, &pose), swapped);
+            self.manifold.local_n1 = n1.as_vec3();
+            self.manifold.local_n2 = n2.as_vec3();
+            write_points(self.manifold, &pose, &contacts, [border, 0.0], swapped);
         }
         Some(())
     }
 }
 
+/// The contact normal as both shapes see it, outwards.
+fn normals(near: &Proximity, pose: &RelativePose) -> [DVec3; 2] {
+    [near.normal, -pose.direction_to_2(near.normal)]
+}
+
 impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
-    fn write_contacts<A: Polytope, B: Polytope>(
+    fn write_contacts<B: Polytope>(
         self,
-        cso: &Cso<'_, A, B>,
+        cso: &Cso<'_, Hull, B>,
         near: &Proximity,
         max_distance: f64,
         borders: [f64; 2],
+        swapped: bool,
         scratch: &mut Scratch<'_>,
     ) {
-        let to_2 = self.pos12.rotation.inverse();
-        let mut n1 = near.normal.as_vec3();
-        let mut n2 = to_2 * -n1;
+        let [mut n1, mut n2] =
+            cache::ordered(normals(near, cso.pose), swapped).map(|n| n.as_vec3());
         let unconstrained = n1;
         let [c1, c2] = self.constraints;
         let constrained = c1.is_some() || c2.is_some();
@@ -88,31 +128,39 @@ impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
         let contacts = if n1 == unconstrained {
             manifold::contacts(cso, near, max_distance, scratch.clip)
         } else {
-            let normal = n1.as_dvec3().normalize();
+            let [normal, _] = cache::ordered([n1, n2], swapped);
+            let normal = normal.as_dvec3().normalize();
             let limit = ABSURD_DEPTH * near.signed_distance.min(0.0);
             manifold::contacts_along(cso, near, normal, [limit, max_distance], scratch.clip)
         };
         self.manifold.local_n1 = n1;
         self.manifold.local_n2 = n2;
-        write_points(self.manifold, cso, &contacts, borders);
+        write_points(self.manifold, cso.pose, &contacts, borders, swapped);
     }
 }
 
 /// Replaces the manifold's points, and gives each new one the data (the solver's impulses) of
-/// the old one between the same features.
-fn write_points<A: Polytope, B: Polytope, M, C: Default + Copy>(
+/// the old one between the same features. A single point that goes on from feature to feature of
+/// one shape (a ball that rolls) stays the same contact.
+fn write_points<M, C: Default + Copy>(
     manifold: &mut ContactManifold<M, C>,
-    cso: &Cso<'_, A, B>,
+    pose: &RelativePose,
     contacts: &Contacts,
     borders: [f64; 2],
+    swapped: bool,
 ) {
-    let (n1, n2) = (manifold.local_n1.as_dvec3(), manifold.local_n2.as_dvec3());
+    let normals = cache::ordered([manifold.local_n1, manifold.local_n2], swapped);
+    let [n1, n2] = normals.map(|n| n.as_dvec3());
     let contacts = contacts.as_slice();
+    let single = manifold.points.len() == 1 && contacts.len() == 1;
     let mut data = [C::default(); manifold::MAX_POINTS];
     for (data, contact) in data.iter_mut().zip(contacts) {
-        let [fid1, fid2] = contact.features.map(cache::pack);
+        let [fid1, fid2] = cache::ordered(contact.features.map(cache::pack), swapped);
         let mut old = manifold.points.iter();
-        if let Some(old) = old.find(|old| old.fid1 == fid1 && old.fid2 == fid2) {
+        if let Some(old) = old.find(|old| match (old.fid1 == fid1, old.fid2 == fid2) {
+            (true, true) => true,
+            (same_1, same_2) => single && (same_1 || same_2),
+        }) {
             *data = old.data;
         }
     }
@@ -120,10 +168,15 @@ fn write_points<A: Polytope, B: Polytope, M, C: Default + Copy>(
     manifold
         .points
         .extend(contacts.iter().zip(data).map(|(contact, data)| {
-            let [fid1, fid2] = contact.features.map(cache::pack);
+            let [fid1, fid2] = cache::ordered(contact.features.map(cache::pack), swapped);
+            let points = [
+                contact.on_1 + n1 * borders[0],
+                pose.point_to_2(contact.on_2) + n2 * borders[1],
+            ];
+            let [local_p1, local_p2] = cache::ordered(points.map(|p| p.as_vec3()), swapped);
             TrackedContact {
-                local_p1: (contact.on_1 + n1 * borders[0]).as_vec3(),
-                local_p2: (cso.pose.point_to_2(contact.on_2) + n2 * borders[1]).as_vec3(),
+                local_p1,
+                local_p2,
                 dist: (contact.distance - borders[0] - borders[1]) as Real,
                 fid1,
                 fid2,

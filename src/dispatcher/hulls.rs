@@ -12,7 +12,7 @@ use std::hash::{BuildHasherDefault, Hasher};
 use glam::Vec3;
 use parry3d::shape::ConvexPolyhedron;
 
-use crate::hull::{Hull, topology};
+use crate::hull::Hull;
 
 /// Bytes of prepared hulls that are kept without asking whether they are still in use.
 const KEEP_BYTES: usize = 16 << 20;
@@ -47,7 +47,7 @@ struct Slot {
 impl Slot {
     fn new(address: Address, polyhedron: &ConvexPolyhedron) -> Self {
         let points = polyhedron.points();
-        let hull = topology::hull_of(polyhedron).ok();
+        let hull = Hull::try_from(polyhedron).ok();
         let same = hull
             .as_ref()
             .is_some_and(|h| same_points(h.points(), points));

@@ -3,6 +3,7 @@
 mod cache;
 mod composite;
 mod convex;
+mod half_space;
 mod hulls;
 mod pair;
 mod scene;

@@ -2,14 +2,17 @@
 
 use std::cell::RefCell;
 
-use parry3d::shape::{Shape, ShapeType, Triangle};
+use glam::DVec3;
+use parry3d::math::Real;
+use parry3d::shape::{Segment as ParrySegment, Shape, ShapeType, Triangle};
 
+use super::cache;
 use super::hulls::{HullRef, HullTable};
 use crate::epa::EpaScratch;
 use crate::hull::Hull;
 use crate::hull_shape::HullShape;
 use crate::manifold::ClipScratch;
-use crate::primitive::{CuboidPolytope, TrianglePolytope};
+use crate::primitive::{Ball, CuboidPolytope, Segment, TrianglePolytope};
 use crate::support::Polytope;
 
 /// What a thread keeps from query to query: prepared hulls, and memory to work in.
@@ -37,6 +40,10 @@ enum Core<'a> {
     Found(HullRef),
     Cuboid(CuboidPolytope),
     Triangle(TrianglePolytope),
+    Ball(Ball),
+    Segment(Segment),
+    /// A half-space, by its outward unit normal.
+    HalfSpace(DVec3),
 }
 
 impl<'a> Core<'a> {
@@ -46,22 +53,34 @@ impl<'a> Core<'a> {
         match self {
             Self::Hull(hull) => Some(hull),
             Self::Found(place) => table.get(*place),
-            Self::Cuboid(_) | Self::Triangle(_) => None,
+            _ => None,
         }
     }
 }
 
-/// Something to do with two polytopes of whatever types.
+/// Something to do with a hull and another shape, which is `swapped` in front of it in the pair.
+/// `borders` are the radii of the rounded borders around the hull and the other shape.
 pub(super) trait PairVisitor {
     /// What comes of it.
     type Output;
 
-    /// `borders` are the radii of the rounded borders around the two polytopes.
-    fn visit<A: Polytope, B: Polytope>(
+    /// The other shape is a polytope.
+    fn visit<B: Polytope>(
         self,
-        shape_1: &A,
-        shape_2: &B,
+        hull: &Hull,
+        other: &B,
         borders: [f64; 2],
+        swapped: bool,
+        bench: &mut Scratch<'_>,
+    ) -> Self::Output;
+
+    /// The other shape is the half-space beneath the plane through its origin with this normal.
+    fn visit_half_space(
+        self,
+        hull: &Hull,
+        normal: DVec3,
+        border: f64,
+        swapped: bool,
         bench: &mut Scratch<'_>,
     ) -> Self::Output;
 }
@@ -88,7 +107,7 @@ pub(super) fn are_hulls(shape_1: &dyn Shape, shape_2: &dyn Shape) -> bool {
         .all(|shape| is_hull(shape, shape.shape_type()))
 }
 
-/// Visits the pair if one of its shapes is a hull and both are polytopes; else `None`.
+/// Visits the pair if one of its shapes is a hull and the other one known; else `None`.
 #[inline]
 pub(super) fn visit<V: PairVisitor>(
     shape_1: &dyn Shape,
@@ -103,19 +122,29 @@ pub(super) fn visit<V: PairVisitor>(
         bench.hulls.make_room();
         let solid_1 = solid(shape_1, types[0], &mut bench.hulls)?;
         let solid_2 = solid(shape_2, types[1], &mut bench.hulls)?;
-        let borders = [solid_1.border, solid_2.border];
         let hulls = [&solid_1, &solid_2].map(|solid| solid.core.hull(&bench.hulls));
+        let (hull, other, swapped) = match hulls {
+            [Some(hull), _] => (hull, &solid_2, false),
+            [None, Some(hull)] => (hull, &solid_1, true),
+            [None, None] => return None,
+        };
+        let borders = cache::ordered([solid_1.border, solid_2.border], swapped);
         let scratch = &mut Scratch {
             epa: &mut bench.epa,
             clip: &mut bench.clip,
         };
-        Some(match (hulls, &solid_1.core, &solid_2.core) {
-            ([Some(a), Some(b)], ..) => visitor.visit(a, b, borders, scratch),
-            ([Some(a), _], _, Core::Cuboid(b)) => visitor.visit(a, b, borders, scratch),
-            ([_, Some(b)], Core::Cuboid(a), _) => visitor.visit(a, b, borders, scratch),
-            ([Some(a), _], _, Core::Triangle(b)) => visitor.visit(a, b, borders, scratch),
-            ([_, Some(b)], Core::Triangle(a), _) => visitor.visit(a, b, borders, scratch),
-            _ => return None,
+        Some(match (&other.core, hulls) {
+            (_, [Some(_), Some(second)]) => visitor.visit(hull, second, borders, false, scratch),
+            (Core::Cuboid(cuboid), _) => visitor.visit(hull, cuboid, borders, swapped, scratch),
+            (Core::Triangle(triangle), _) => {
+                visitor.visit(hull, triangle, borders, swapped, scratch)
+            }
+            (Core::Ball(ball), _) => visitor.visit(hull, ball, borders, swapped, scratch),
+            (Core::Segment(segment), _) => visitor.visit(hull, segment, borders, swapped, scratch),
+            (Core::HalfSpace(normal), _) => {
+                visitor.visit_half_space(hull, *normal, borders[0], swapped, scratch)
+            }
+            (Core::Hull(_) | Core::Found(_), _) => return None,
         })
     })
 }
@@ -154,12 +183,36 @@ fn solid<'a>(
             let round = shape.as_round_triangle()?;
             (triangle(&round.inner_shape)?, round.border_radius)
         }
+        ShapeType::Ball => {
+            let radius = shape.as_ball()?.radius;
+            (Core::Ball(Ball::new(positive(radius)?)), radius)
+        }
+        ShapeType::Capsule => {
+            let capsule = shape.as_capsule()?;
+            (segment(&capsule.segment, capsule.radius)?, capsule.radius)
+        }
+        ShapeType::Segment => (segment(shape.as_segment()?, 0.0)?, 0.0),
+        ShapeType::HalfSpace => {
+            let normal = shape.as_halfspace()?.normal.as_dvec3();
+            (Core::HalfSpace(normal.try_normalize()?), 0.0)
+        }
         _ => return None,
     };
     Some(Solid {
         core,
         border: border.into(),
     })
+}
+
+/// A length that tolerances can be relative to.
+fn positive(length: Real) -> Option<f64> {
+    (length > 0.0 && length.is_finite()).then(|| length.into())
+}
+
+fn segment(segment: &ParrySegment, border: Real) -> Option<Core<'static>> {
+    positive(segment.length() + border)?;
+    let ends = [segment.a, segment.b].map(|p| p.as_dvec3());
+    Some(Core::Segment(Segment::new(ends, border.into())))
 }
 
 fn triangle(triangle: &Triangle) -> Option<Core<'static>> {

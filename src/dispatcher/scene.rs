@@ -5,7 +5,10 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::{ClosestPoints, Contact};
 use parry3d::shape::Shape;
 
+use super::cache::ordered;
+use super::half_space;
 use super::pair::{self, PairVisitor, Scratch};
+use crate::hull::Hull;
 use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Proximity, Query};
 use crate::stats::Cost;
@@ -45,20 +48,21 @@ struct ColdQuery<'a> {
 impl PairVisitor for ColdQuery<'_> {
     type Output = Option<Option<Near>>;
 
-    fn visit<A: Polytope, B: Polytope>(
+    fn visit<B: Polytope>(
         self,
-        shape_1: &A,
-        shape_2: &B,
+        hull: &Hull,
+        other: &B,
         borders: [f64; 2],
+        swapped: bool,
         scratch: &mut Scratch<'_>,
     ) -> Self::Output {
         if !RelativePose::is_valid(self.pos12) {
             return None;
         }
-        let pose = RelativePose::from_valid(self.pos12);
+        let pose = RelativePose::of_first(self.pos12, swapped);
         let cso = Cso {
-            shape_1,
-            shape_2,
+            shape_1: hull,
+            shape_2: other,
             pose: &pose,
         };
         let (answer, _) = Query {
@@ -70,19 +74,40 @@ impl PairVisitor for ColdQuery<'_> {
         .run(&Memory::None)?;
         Some(match answer {
             Answer::Apart(_) => None,
-            Answer::Near(proximity) => Some(Near::new(&proximity, &pose, borders)),
+            Answer::Near(near) => Some(Near::new(&near, &pose, borders, swapped)),
         })
+    }
+
+    fn visit_half_space(
+        self,
+        hull: &Hull,
+        normal: DVec3,
+        border: f64,
+        swapped: bool,
+        _: &mut Scratch<'_>,
+    ) -> Self::Output {
+        if !RelativePose::is_valid(self.pos12) {
+            return None;
+        }
+        let pose = RelativePose::of_first(self.pos12, swapped);
+        let cost = &mut Cost::default();
+        let near = half_space::deepest(hull, normal, &pose, &Memory::None, cost);
+        let reach = f64::from(self.max_distance) + border;
+        Some(
+            (near.signed_distance <= reach)
+                .then(|| Near::new(&near, &pose, [border, 0.0], swapped)),
+        )
     }
 }
 
 impl Near {
-    fn new(proximity: &Proximity, pose: &RelativePose, borders: [f64; 2]) -> Self {
-        let normals = [proximity.normal, -pose.direction_to_2(proximity.normal)];
-        let points = [proximity.on_1, pose.point_to_2(proximity.on_2)];
+    fn new(near: &Proximity, pose: &RelativePose, borders: [f64; 2], swapped: bool) -> Self {
+        let normals = [near.normal, -pose.direction_to_2(near.normal)];
+        let points = [near.on_1, pose.point_to_2(near.on_2)];
         Self {
-            signed_distance: proximity.signed_distance - borders[0] - borders[1],
-            normals,
-            points: [0, 1].map(|i| points[i] + normals[i] * borders[i]),
+            signed_distance: near.signed_distance - borders[0] - borders[1],
+            normals: ordered(normals, swapped),
+            points: ordered([0, 1].map(|i| points[i] + normals[i] * borders[i]), swapped),
         }
     }
 

@@ -3,9 +3,11 @@
 use glam::{DVec3, Vec3};
 
 use super::climb::{self, Slope};
-use super::faces::{Faces, triangle_neighbors};
+use super::cloud;
+use super::faces::Faces;
 use super::graph::EdgeGraph;
 use super::start::StartTable;
+use super::surface::{Surface, next};
 use super::{Hull, HullError};
 use crate::stats::Cost;
 use crate::support::{FaceId, Polytope};
@@ -17,7 +19,8 @@ const MAX_VERTICES: usize = 32_768;
 impl Hull {
     /// The convex hull of a point cloud, by parry's hull builder.
     ///
-    /// Points inside the hull are dropped, so that vertex ids are not indices into `points`.
+    /// Points inside the hull are dropped and equal points are one vertex, so that vertex ids are
+    /// not indices into `points`.
     ///
     /// # Errors
     /// Names what is wrong with the points, see [`HullError`].
@@ -31,8 +34,7 @@ impl Hull {
     /// # Ok::<(), isa_gjk::HullError>(())
     /// ```
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
-        let (vertices, triangles) = surface(points)?;
-        Self::from_triangles(vertices, &triangles)
+        cloud::surround(points, Self::from_triangles)
     }
 
     /// From the triangulated surface of a convex polytope, counter-clockwise from outside.
@@ -50,14 +52,17 @@ impl Hull {
         }
         require_finite(&points)?;
         require_triangles(&points, triangles)?;
-        let mut graph = EdgeGraph::new(points.len(), triangles)?;
-        let (center, radius) = center_and_radius(&points, triangles)?;
-        require_convex(&points, triangles, radius)?;
+        require_different(&points)?;
+        let surface = Surface::new(points.len(), triangles)?;
+        // All arithmetic is f64: converted once.
+        let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
+        let (center, radius) = center_and_radius(&exact, triangles)?;
+        require_convex(&exact, &surface, radius)?;
 
-        let (faces, face_of) = Faces::new(&points, triangles, &graph, radius);
-        graph.set_faces(triangles, &face_of);
+        let (faces, face_of) = Faces::new(&exact, &surface, radius);
+        let graph = EdgeGraph::new(&surface, &face_of);
         let face_len = |f: u16| faces.polygon(f.into()).len();
-        let fragile = climb::fragile(&points, &graph, radius, face_len);
+        let fragile = climb::fragile(&exact, &graph, radius, face_len);
         let slope = Slope {
             points: &points,
             graph: &graph,
@@ -89,22 +94,7 @@ impl Hull {
     }
 }
 
-/// The vertices and triangles of a point cloud's hull, by parry's hull builder.
-pub(crate) fn surface(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
-    if points.len() < 4 {
-        return Err(HullError::TooFewPoints);
-    }
-    require_finite(points)?;
-    let (vertices, triangles) =
-        parry3d::transformation::try_convex_hull(points).map_err(|_| HullError::BuilderFailed)?;
-    // Of points on a line the builder keeps the ends.
-    if vertices.len() < 4 {
-        return Err(HullError::Flat);
-    }
-    Ok((vertices, triangles))
-}
-
-fn require_finite(points: &[Vec3]) -> Result<(), HullError> {
+pub(super) fn require_finite(points: &[Vec3]) -> Result<(), HullError> {
     match points.iter().position(|p| !p.is_finite()) {
         Some(i) => Err(HullError::NotFinite(i)),
         None => Ok(()),
@@ -121,20 +111,31 @@ fn require_triangles(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), Hull
     }
 }
 
+/// No two points are in the same place: corners of a mesh that were not welded.
+fn require_different(points: &[Vec3]) -> Result<(), HullError> {
+    // Adding zero turns -0 into 0.
+    let bits = |(i, p): (usize, &Vec3)| ((*p + Vec3::ZERO).to_array().map(f32::to_bits), i);
+    let mut places: Vec<([u32; 3], usize)> = points.iter().enumerate().map(bits).collect();
+    places.sort_unstable();
+    let same = places.windows(2).filter(|pair| pair[0].0 == pair[1].0);
+    match same.map(|pair| pair[1].1).min() {
+        Some(i) => Err(HullError::DuplicateVertex(i)),
+        None => Ok(()),
+    }
+}
+
 /// The centre of volume, and the largest distance of a vertex from it.
-fn center_and_radius(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(DVec3, f64), HullError> {
-    let origin = points[0].as_dvec3();
+fn center_and_radius(points: &[DVec3], triangles: &[[u32; 3]]) -> Result<(DVec3, f64), HullError> {
+    let origin = points[0];
     let (mut volume, mut moment) = (0.0, DVec3::ZERO);
     for triangle in triangles {
-        let [a, b, c] = triangle.map(|v| points[v as usize].as_dvec3() - origin);
+        let [a, b, c] = triangle.map(|v| points[v as usize] - origin);
         let v = a.dot(b.cross(c));
         volume += v;
         moment += (a + b + c) * v;
     }
     let farthest = |from: DVec3| {
-        let distances = points
-            .iter()
-            .map(|p| (p.as_dvec3() - from).length_squared());
+        let distances = points.iter().map(|p| (*p - from).length_squared());
         distances.fold(0.0, f64::max).sqrt()
     };
     // Of a flat surface rounding chooses the sign.
@@ -152,17 +153,18 @@ fn center_and_radius(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(DVec3, 
 ///
 /// A dent is as deep as the edge passes beneath the other diagonal of its two triangles. (Heights
 /// over the triangles' planes say nothing where these are slivers.)
-fn require_convex(points: &[Vec3], triangles: &[[u32; 3]], radius: f64) -> Result<(), HullError> {
-    let at = |v: u32| points[v as usize].as_dvec3();
-    for (t, around) in triangle_neighbors(triangles).into_iter().enumerate() {
-        for (k, other) in around.into_iter().enumerate() {
-            let [a, b, c] = [0, 1, 2].map(|i| triangles[t][(k + i) % 3]);
-            let opposite = triangles[other].into_iter().find(|&v| v != a && v != b);
-            let Some(d) = opposite else { continue };
-            let across = (at(b) - at(a)).cross(at(d) - at(c));
-            let rise = (at(b) - at(a)).cross(at(c) - at(a)).dot(at(d) - at(a));
+fn require_convex(points: &[DVec3], surface: &Surface<'_>, radius: f64) -> Result<(), HullError> {
+    let at = |v: u32| points[v as usize];
+    for h in 0..3 * surface.triangles.len() as u32 {
+        let twin = surface.twin(h);
+        if h < twin {
+            let opposite = surface.end(next(twin));
+            let [a, b, c] = [surface.start(h), surface.end(h), surface.end(next(h))].map(at);
+            let d = at(opposite);
+            let across = (b - a).cross(d - c);
+            let rise = (b - a).cross(c - a).dot(d - a);
             if rise > CONVEXITY * radius * across.length() {
-                return Err(HullError::NotConvex(d as usize));
+                return Err(HullError::NotConvex(opposite as usize));
             }
         }
     }

@@ -124,22 +124,22 @@ impl Slope<'_> {
 /// The vertices at which a tie may hide a way up: those inside of a face or of a straight edge
 /// (with fewer than three faces), with a very short edge, or on a face of many corners.
 pub(super) fn fragile(
-    points: &[Vec3],
+    points: &[DVec3],
     graph: &EdgeGraph,
     radius: f64,
     face_len: impl Fn(u16) -> usize,
 ) -> Box<[bool]> {
+    let shortest = SHORT_EDGE * radius;
     (0..points.len() as VertexId)
         .map(|v| {
-            let here = points[v as usize].as_dvec3();
-            let short = graph
-                .neighbors(v)
-                .iter()
-                .any(|&w| points[w as usize].as_dvec3().distance(here) < SHORT_EDGE * radius);
-            let mut faces = graph.faces_at(v).to_vec();
-            faces.sort_unstable();
-            faces.dedup();
-            let corner = faces.len() >= 3;
+            let to = |w: u16| points[v as usize].distance_squared(points[w as usize]);
+            let mut around = graph.neighbors(v).iter();
+            let short = around.any(|&w| to(w) < shortest * shortest);
+            let faces = graph.faces_at(v);
+            let first = faces[0];
+            let mut others = faces.iter().filter(|&&f| f != first);
+            let second = others.next();
+            let corner = others.any(|f| Some(f) != second);
             short || !corner || faces.iter().any(|&f| face_len(f) >= LARGE_FACE)
         })
         .collect()

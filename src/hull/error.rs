@@ -16,6 +16,8 @@ pub enum HullError {
     Flat,
     /// A triangle refers to a vertex that does not exist, or twice to the same one.
     BadTriangle(usize),
+    /// The vertex with this index is in the same place as an earlier one: the mesh is not welded.
+    DuplicateVertex(usize),
     /// The vertex with this index belongs to no triangle.
     LooseVertex(usize),
     /// The surface is not closed, or an edge has more than two triangles, or two surfaces touch.
@@ -36,6 +38,7 @@ impl fmt::Display for HullError {
             Self::NotFinite(i) => write!(f, "point {i} is not finite"),
             Self::Flat => write!(f, "the points span no volume"),
             Self::BadTriangle(i) => write!(f, "triangle {i} has missing or repeated vertices"),
+            Self::DuplicateVertex(i) => write!(f, "vertex {i} repeats an earlier one"),
             Self::LooseVertex(i) => write!(f, "vertex {i} belongs to no triangle"),
             Self::NotManifold => write!(f, "the triangles do not form one closed surface"),
             Self::InsideOut => write!(f, "the triangles turn clockwise seen from outside"),

@@ -1,8 +1,11 @@
 //! Faces of a hull: coplanar triangles joined to polygons, with their planes.
 
+use std::cmp::Reverse;
+
 use glam::{DVec3, Vec3};
 
-use super::graph::EdgeGraph;
+use super::graph::edge_name;
+use super::surface::{HalfEdge, Surface, next, triangle};
 use crate::support::FaceId;
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, SLIVER};
 
@@ -33,15 +36,20 @@ impl Plane {
 
     /// Through the outermost of the polygon's corners and their neighbours: on a convex hull no
     /// vertex is farther out.
-    fn new(points: &[Vec3], polygon: &[u16], graph: &EdgeGraph, radius: f64) -> Self {
-        let normal = polygon_normal(points, polygon).as_vec3();
-        let height = |v: u16| normal.as_dvec3().dot(points[v as usize].as_dvec3());
+    fn new(points: &[DVec3], surface: &Surface<'_>, polygon: &[HalfEdge], radius: f64) -> Self {
+        let normal = polygon_normal(points, surface, polygon).as_vec3();
+        let direction = normal.as_dvec3();
+        let height = |v: u32| direction.dot(points[v as usize]);
         let (mut lowest, mut offset) = (f64::INFINITY, f64::NEG_INFINITY);
-        for &corner in polygon {
-            lowest = lowest.min(height(corner));
-            offset = offset.max(height(corner));
-            for &neighbor in graph.neighbors(corner.into()) {
-                offset = offset.max(height(neighbor));
+        for &side in polygon {
+            let corner = surface.start(side);
+            let level = height(corner);
+            lowest = lowest.min(level);
+            offset = offset.max(level);
+            for side in surface.leaving(corner) {
+                let level = height(side.to.into());
+                // No number is missing here, which `max` would have to look into.
+                offset = if level > offset { level } else { offset };
             }
         }
         if offset - lowest > 2.0 * FACE_FLATNESS * radius {
@@ -53,32 +61,37 @@ impl Plane {
 }
 
 impl Faces {
-    /// Joins the `triangles` of `graph`, and says to which face each of them went.
-    pub fn new(
-        points: &[Vec3],
-        triangles: &[[u32; 3]],
-        graph: &EdgeGraph,
-        radius: f64,
-    ) -> (Self, Vec<u16>) {
-        let regions = Regions::grow(points, triangles, radius);
-        let mut first = vec![0];
-        let mut vertices = Vec::with_capacity(triangles.len() * 3);
-        let mut edges = Vec::with_capacity(triangles.len() * 3);
-        let mut planes = Vec::new();
-        let mut face_of = vec![0_u16; triangles.len()];
-        for region in regions.all {
-            for polygon in polygons(points, triangles, &region, radius) {
-                for &t in &polygon.triangles {
-                    face_of[t] = planes.len() as u16;
+    /// Joins the triangles of a surface, and says to which face each of them went.
+    pub fn new(points: &[DVec3], surface: &Surface<'_>, radius: f64) -> (Self, Vec<u16>) {
+        let count = surface.triangles.len();
+        let regions = Regions::grow(points, surface, radius);
+        let mut face_of = vec![0_u16; count];
+        let mut planes = Vec::with_capacity(count);
+        let mut first = Vec::with_capacity(count + 1);
+        let mut vertices = Vec::with_capacity(3 * count);
+        let mut edges = Vec::with_capacity(3 * count);
+        first.push(0);
+        let mut add = |polygon: &[HalfEdge], triangles: &[u32]| {
+            for &t in triangles {
+                face_of[t as usize] = planes.len() as u16;
+            }
+            planes.push(Plane::new(points, surface, polygon, radius));
+            vertices.extend(polygon.iter().map(|&side| surface.start(side) as u16));
+            edges.extend(polygon.iter().map(|&side| edge_name(surface, side)));
+            first.push(vertices.len() as u32);
+        };
+        let mut polygon = Vec::new();
+        for region in regions.all() {
+            let joined = region.len() > 1
+                && regions.boundary(surface, region, &mut polygon)
+                && is_convex(points, surface, &polygon, radius);
+            if joined {
+                add(&polygon, region);
+            } else {
+                // Triangle by triangle where it is not one convex polygon.
+                for &t in region {
+                    add(&[3 * t, 3 * t + 1, 3 * t + 2], &[t]);
                 }
-                planes.push(Plane::new(points, &polygon.vertices, graph, radius));
-                vertices.extend_from_slice(&polygon.vertices);
-                let ends = polygon.vertices.iter().cycle().skip(1);
-                edges.extend(polygon.vertices.iter().zip(ends).map(|(&from, &to)| {
-                    // A polygon's sides are sides of triangles, whose edges all have names.
-                    graph.edge_id(from.into(), to.into()).unwrap_or_default()
-                }));
-                first.push(vertices.len() as u32);
             }
         }
         let faces = Self {
@@ -138,19 +151,19 @@ impl Faces {
 }
 
 /// Twice the area vector of a triangle.
-fn area_vector(points: &[Vec3], triangle: [u32; 3]) -> DVec3 {
-    let [a, b, c] = triangle.map(|v| points[v as usize].as_dvec3());
+fn area_vector(points: &[DVec3], triangle: [u32; 3]) -> DVec3 {
+    let [a, b, c] = triangle.map(|v| points[v as usize]);
     (b - a).cross(c - a)
 }
 
-fn longest_side(points: &[Vec3], triangle: [u32; 3]) -> f64 {
-    let [a, b, c] = triangle.map(|v| points[v as usize].as_dvec3());
+fn longest_side(points: &[DVec3], triangle: [u32; 3]) -> f64 {
+    let [a, b, c] = triangle.map(|v| points[v as usize]);
     a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
 
-/// Twice the area vector of a polygon, normalised (Newell's method, about its first vertex).
-fn polygon_normal(points: &[Vec3], polygon: &[u16]) -> DVec3 {
-    let at = |i: usize| points[polygon[i] as usize].as_dvec3();
+/// The area vector of a polygon, normalised (Newell's method, about its first vertex).
+fn polygon_normal(points: &[DVec3], surface: &Surface<'_>, polygon: &[HalfEdge]) -> DVec3 {
+    let at = |i: usize| points[surface.start(polygon[i]) as usize];
     let origin = at(0);
     let sum: DVec3 = (1..polygon.len() - 1)
         .map(|i| (at(i) - origin).cross(at(i + 1) - origin))
@@ -160,139 +173,110 @@ fn polygon_normal(points: &[Vec3], polygon: &[u16]) -> DVec3 {
 
 /// Sets of triangles that lie in one plane each.
 struct Regions {
-    all: Vec<Vec<usize>>,
+    /// The triangles, region by region, and where the regions begin.
+    triangles: Vec<u32>,
+    first: Vec<usize>,
+    /// The region of each triangle.
+    of: Vec<u32>,
 }
+
+/// In no region yet.
+const FREE: u32 = u32::MAX;
 
 impl Regions {
     /// Grows from the largest triangles, whose normals are the most reliable.
-    fn grow(points: &[Vec3], triangles: &[[u32; 3]], radius: f64) -> Self {
-        let areas: Vec<DVec3> = triangles.iter().map(|&t| area_vector(points, t)).collect();
-        let neighbors = triangle_neighbors(triangles);
-        let mut order: Vec<usize> = (0..triangles.len()).collect();
-        order.sort_by(|&a, &b| {
-            let (a, b) = (areas[a].length_squared(), areas[b].length_squared());
-            b.total_cmp(&a)
-        });
-        let mut taken = vec![false; triangles.len()];
-        let mut all = Vec::new();
-        for seed in order {
-            if taken[seed] {
+    fn grow(points: &[DVec3], surface: &Surface<'_>, radius: f64) -> Self {
+        let triangles = surface.triangles;
+        let vectors: Vec<DVec3> = triangles.iter().map(|&t| area_vector(points, t)).collect();
+        let areas: Vec<f64> = vectors.iter().map(|vector| vector.length()).collect();
+        // The bits of numbers that are not negative are in their order.
+        let largest_first = |area: &f64| Reverse(area.to_bits());
+        let mut seeds: Vec<_> = areas.iter().map(largest_first).zip(0..).collect();
+        seeds.sort_unstable();
+        let mut regions = Self {
+            triangles: Vec::with_capacity(triangles.len()),
+            first: vec![0],
+            of: vec![FREE; triangles.len()],
+        };
+        for (_, seed) in seeds {
+            if regions.of[seed as usize] != FREE {
                 continue;
             }
-            taken[seed] = true;
-            let normal = areas[seed].normalize_or_zero();
-            let level = normal.dot(points[triangles[seed][0] as usize].as_dvec3());
-            let mut region = vec![seed];
-            let mut next = 0;
-            while next < region.len() {
-                for t in neighbors[region[next]] {
-                    let flat = triangles[t].iter().all(|&v| {
-                        let height = normal.dot(points[v as usize].as_dvec3()) - level;
-                        height.abs() <= FACE_FLATNESS * radius
-                    });
-                    // The direction of a sliver is rounding only; its neighbours decide.
-                    let area = areas[t].length();
-                    let sliver = area <= SLIVER * radius * longest_side(points, triangles[t]);
-                    let turned = !sliver && normal.dot(areas[t]) < FACE_ANGLE_COS * area;
-                    if !taken[t] && flat && !turned {
-                        taken[t] = true;
-                        region.push(t);
-                    }
+            let normal = vectors[seed as usize].normalize_or_zero();
+            let height = |v: u32| normal.dot(points[v as usize]);
+            let level = height(triangles[seed as usize][0]);
+            let joins = |t: usize| {
+                // The direction of a sliver is rounding only; its neighbours decide.
+                let turned = normal.dot(vectors[t]) < FACE_ANGLE_COS * areas[t];
+                let sliver = || areas[t] <= SLIVER * radius * longest_side(points, triangles[t]);
+                let flat = |&v: &u32| (height(v) - level).abs() <= FACE_FLATNESS * radius;
+                (!turned || sliver()) && triangles[t].iter().all(flat)
+            };
+            regions.add(surface, seed, joins);
+        }
+        regions
+    }
+
+    /// A new region: the triangles that hang together with `seed` and join it.
+    fn add(&mut self, surface: &Surface<'_>, seed: u32, joins: impl Fn(usize) -> bool) {
+        let region = (self.first.len() - 1) as u32;
+        let mut at = self.triangles.len();
+        self.of[seed as usize] = region;
+        self.triangles.push(seed);
+        while let Some(&t) = self.triangles.get(at) {
+            for side in 3 * t..3 * t + 3 {
+                let other = triangle(surface.twin(side));
+                if self.of[other] == FREE && joins(other) {
+                    self.of[other] = region;
+                    self.triangles.push(other as u32);
                 }
-                next += 1;
             }
-            all.push(region);
+            at += 1;
         }
-        Self { all }
+        self.first.push(self.triangles.len());
     }
-}
 
-/// For each triangle the three that share an edge with it. The surface is closed.
-pub(super) fn triangle_neighbors(triangles: &[[u32; 3]]) -> Vec<[usize; 3]> {
-    let mut edges: Vec<(u32, u32, usize, usize)> = Vec::with_capacity(triangles.len() * 3);
-    for (t, triangle) in triangles.iter().enumerate() {
-        for k in 0..3 {
-            let (a, b) = (triangle[k], triangle[(k + 1) % 3]);
-            edges.push((a.min(b), a.max(b), t, k));
+    fn all(&self) -> impl Iterator<Item = &[u32]> {
+        self.first
+            .windows(2)
+            .map(|ends| &self.triangles[ends[0]..ends[1]])
+    }
+
+    /// Leaves the sides around a region in `polygon`; `false` if they are not one loop.
+    fn boundary(&self, surface: &Surface<'_>, region: &[u32], polygon: &mut Vec<HalfEdge>) -> bool {
+        let inner = |side: HalfEdge| {
+            let [here, beyond] = [side, surface.twin(side)].map(|h| self.of[triangle(h)]);
+            here == beyond
+        };
+        let sides = region.iter().flat_map(|&t| 3 * t..3 * t + 3);
+        let mut outer = sides.filter(|&side| !inner(side));
+        polygon.clear();
+        let Some(start) = outer.next() else {
+            return false; // the whole surface
+        };
+        let mut side = start;
+        loop {
+            polygon.push(side);
+            side = next(side);
+            while inner(side) {
+                side = next(surface.twin(side));
+            }
+            if side == start {
+                return polygon.len() == 1 + outer.count();
+            }
         }
-    }
-    edges.sort_unstable();
-    let mut neighbors = vec![[0; 3]; triangles.len()];
-    for pair in edges.chunks_exact(2) {
-        let [(_, _, t0, k0), (_, _, t1, k1)] = [pair[0], pair[1]];
-        neighbors[t0][k0] = t1;
-        neighbors[t1][k1] = t0;
-    }
-    neighbors
-}
-
-/// A polygon and the triangles it was made from.
-struct Polygon {
-    vertices: Vec<u16>,
-    triangles: Vec<usize>,
-}
-
-/// The boundary of a region as one polygon; triangle by triangle where it is not one convex loop.
-fn polygons(
-    points: &[Vec3],
-    triangles: &[[u32; 3]],
-    region: &[usize],
-    radius: f64,
-) -> Vec<Polygon> {
-    let single = |t: usize| Polygon {
-        vertices: triangles[t].map(|v| v as u16).into(),
-        triangles: vec![t],
-    };
-    if let [t] = region {
-        return vec![single(*t)];
-    }
-    let convex = |vertices: &Vec<u16>| is_convex(points, vertices, radius);
-    match boundary_loop(triangles, region).filter(convex) {
-        Some(vertices) => vec![Polygon {
-            vertices,
-            triangles: region.into(),
-        }],
-        None => region.iter().map(|&t| single(t)).collect(),
     }
 }
 
 /// Whether no corner is a dent, beyond rounding.
-fn is_convex(points: &[Vec3], polygon: &[u16], radius: f64) -> bool {
-    let normal = polygon_normal(points, polygon);
+fn is_convex(points: &[DVec3], surface: &Surface<'_>, polygon: &[HalfEdge], radius: f64) -> bool {
+    let normal = polygon_normal(points, surface, polygon);
     let count = polygon.len();
-    let at = |i: usize| points[polygon[i % count] as usize].as_dvec3();
+    let at = |i: usize| points[surface.start(polygon[i % count]) as usize];
     (0..count).all(|i| {
         let (before, here, after) = (at(i), at(i + 1), at(i + 2));
         let chord = after - before;
         let outward = normal.dot((here - before).cross(chord));
         outward >= -FACE_FLATNESS * radius * chord.length()
     })
-}
-
-fn boundary_loop(triangles: &[[u32; 3]], region: &[usize]) -> Option<Vec<u16>> {
-    let mut edges: Vec<(u32, u32)> = region
-        .iter()
-        .flat_map(|&t| {
-            let [a, b, c] = triangles[t];
-            [(a, b), (b, c), (c, a)]
-        })
-        .collect();
-    edges.sort_unstable();
-    let boundary: Vec<(u32, u32)> = edges
-        .iter()
-        .copied()
-        .filter(|&(a, b)| edges.binary_search(&(b, a)).is_err())
-        .collect();
-    let start = boundary.first()?.0;
-    let mut polygon = Vec::with_capacity(boundary.len());
-    let mut at = start;
-    for _ in 0..boundary.len() {
-        polygon.push(at as u16);
-        let i = boundary.partition_point(|&(a, _)| a < at);
-        at = boundary.get(i).filter(|&&(a, _)| a == at)?.1;
-        if at == start {
-            break;
-        }
-    }
-    (polygon.len() == boundary.len() && at == start).then_some(polygon)
 }

@@ -1,6 +1,8 @@
 //! The edge graph of a triangulated hull: rows of neighbours, and the face left of each edge.
 
-use super::HullError;
+use std::array;
+
+use super::surface::{HalfEdge, Side, Surface, triangle};
 use crate::support::{FaceId, VertexId};
 
 /// Neighbours are stored and evaluated in fours, so that a climb has no branch per neighbour.
@@ -20,49 +22,25 @@ pub(super) struct EdgeGraph {
 }
 
 impl EdgeGraph {
-    /// From triangles, counter-clockwise seen from outside, over `count` vertices.
-    pub fn new(count: usize, triangles: &[[u32; 3]]) -> Result<Self, HullError> {
-        let mut neighbors = vec![Vec::with_capacity(2 * LANES); count];
-        for triangle in triangles {
-            for k in 0..3 {
-                neighbors[triangle[k] as usize].push(triangle[(k + 1) % 3] as u16);
-            }
-        }
-        require_manifold(&neighbors, triangles.len())?;
+    /// From a surface whose triangles went to the faces `face_of`.
+    pub fn new(surface: &Surface<'_>, face_of: &[u16]) -> Self {
+        let count = surface.vertex_count();
         let mut first = Vec::with_capacity(count + 1);
         let mut rows = Vec::with_capacity(2 * count);
+        let mut left = Vec::with_capacity(2 * count);
         first.push(0);
-        for around in &neighbors {
-            for chunk in around.chunks(LANES) {
-                let mut row = [chunk[chunk.len() - 1]; LANES];
-                row[..chunk.len()].copy_from_slice(chunk);
-                rows.push(row);
+        for v in 0..count as u32 {
+            for chunk in surface.leaving(v).chunks(LANES) {
+                let lanes: [Side; LANES] = array::from_fn(|i| chunk[i.min(chunk.len() - 1)]);
+                rows.push(lanes.map(|side| side.to));
+                left.push(lanes.map(|side| face_of[triangle(side.half_edge)]));
             }
             first.push(rows.len() as u32);
         }
-        Ok(Self {
-            left: vec![[0; LANES]; rows.len()].into(),
+        Self {
             first: first.into(),
             rows: rows.into(),
-        })
-    }
-
-    /// Tells the graph which face each triangle belongs to.
-    pub fn set_faces(&mut self, triangles: &[[u32; 3]], face_of: &[u16]) {
-        for (triangle, &face) in triangles.iter().zip(face_of) {
-            for k in 0..3 {
-                let (from, to) = (triangle[k], triangle[(k + 1) % 3]);
-                let first = self.first[from as usize] as usize;
-                let end = self.first[from as usize + 1] as usize;
-                let targets = self.rows[first..end].as_flattened();
-                let faces = self.left[first..end].as_flattened_mut();
-                // All copies of a neighbour, those that fill up the row, too.
-                for (target, left) in targets.iter().zip(faces) {
-                    if VertexId::from(*target) == to {
-                        *left = face;
-                    }
-                }
-            }
+            left: left.into(),
         }
     }
 
@@ -119,39 +97,13 @@ impl EdgeGraph {
     }
 }
 
-/// Every directed edge is there once and has its reverse, and the surface is one sphere.
-fn require_manifold(neighbors: &[Vec<u16>], triangles: usize) -> Result<(), HullError> {
-    if let Some(loose) = neighbors.iter().position(Vec::is_empty) {
-        return Err(HullError::LooseVertex(loose));
-    }
-    for (v, around) in neighbors.iter().enumerate() {
-        for (i, &w) in around.iter().enumerate() {
-            let reversed = neighbors[w as usize].contains(&(v as u16));
-            if !reversed || around[..i].contains(&w) {
-                return Err(HullError::NotManifold);
-            }
-        }
-    }
-    let sphere = neighbors.len() + triangles == triangles * 3 / 2 + 2;
-    if sphere && reachable(neighbors) == neighbors.len() {
-        Ok(())
+/// The name that the graph of a surface gives to an edge.
+pub(super) fn edge_name(surface: &Surface<'_>, h: HalfEdge) -> u32 {
+    let twin = surface.twin(h);
+    let h = if surface.start(h) < surface.start(twin) {
+        h
     } else {
-        Err(HullError::NotManifold)
-    }
-}
-
-fn reachable(neighbors: &[Vec<u16>]) -> usize {
-    let mut seen = vec![false; neighbors.len()];
-    let mut stack = vec![0_u16];
-    seen[0] = true;
-    let mut reached = 0;
-    while let Some(v) = stack.pop() {
-        reached += 1;
-        for &w in &neighbors[v as usize] {
-            if !std::mem::replace(&mut seen[w as usize], true) {
-                stack.push(w);
-            }
-        }
-    }
-    reached
+        twin
+    };
+    surface.start(h) << PLACE_BITS | surface.place(h)
 }

@@ -2,13 +2,15 @@
 
 mod build;
 mod climb;
+mod cloud;
 mod error;
 mod faces;
 mod graph;
 mod start;
+mod surface;
 pub(crate) mod topology;
 
-pub(crate) use build::surface;
+pub(crate) use cloud::surround;
 pub use error::HullError;
 
 use glam::{DVec3, Vec3};
@@ -45,7 +47,10 @@ impl Hull {
         self.faces.len()
     }
 
-    /// Bytes of heap memory held.
+    /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 141 bytes
+    /// per vertex: 12 for the point, 36 for the neighbours and the faces between them, 56 for the
+    /// planes of two faces, 36 for their corners and edges, 1 for the climb; and at most 768 bytes
+    /// for the start table. Joined faces cost less.
     pub fn heap_bytes(&self) -> usize {
         size_of_val(&*self.points)
             + self.graph.heap_bytes()

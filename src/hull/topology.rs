@@ -13,11 +13,15 @@ use super::{Hull, HullError};
 
 /// The hull of a polyhedron, with its vertex ids; with new ones where its surface is not a
 /// convex triangulation of all of its points.
-pub(crate) fn hull_of(polyhedron: &ConvexPolyhedron) -> Result<Hull, HullError> {
-    let points = polyhedron.points();
-    triangles(polyhedron)
-        .and_then(|triangles| Hull::from_triangles(points.to_vec(), &triangles).ok())
-        .map_or_else(|| Hull::from_points(points), Ok)
+impl TryFrom<&ConvexPolyhedron> for Hull {
+    type Error = HullError;
+
+    fn try_from(polyhedron: &ConvexPolyhedron) -> Result<Self, HullError> {
+        let points = polyhedron.points();
+        triangles(polyhedron)
+            .and_then(|triangles| Self::from_triangles(points.to_vec(), &triangles).ok())
+            .map_or_else(|| Self::from_points(points), Ok)
+    }
 }
 
 /// The triangles of a polyhedron, counter-clockwise from outside; `None` if they cannot be told.

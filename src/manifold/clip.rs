@@ -75,6 +75,38 @@ pub(super) fn intersect(scratch: &mut ClipScratch) {
     }
 }
 
+/// Clips the line between the two corners of `scratch.polygon` by `scratch.window`, and leaves the
+/// ends of what is inside, in their order.
+pub(super) fn intersect_line(scratch: &mut ClipScratch) {
+    let [from, to] = [scratch.polygon[0], scratch.polygon[1]];
+    let count = scratch.window.len();
+    // Where the part inside begins and ends, as shares of the way.
+    let (mut first, mut last) = ((0.0, from.tag), (1.0, to.tag));
+    for i in 0..count {
+        let corner = scratch.window[i];
+        let along = scratch.window[(i + 1) % count] - corner;
+        let [height, next_height] = [from, to].map(|v| along.perp_dot(v.at - corner));
+        let tag = Tag::Crossing(i as u16, 0);
+        let at = height / (height - next_height);
+        if height < 0.0 && next_height < 0.0 {
+            first.0 = f64::INFINITY;
+        } else if height < 0.0 && at > first.0 {
+            first = (at, tag);
+        } else if next_height < 0.0 && at < last.0 {
+            last = (at, tag);
+        }
+    }
+    scratch.polygon.clear();
+    if first.0 <= last.0 {
+        let end = |(share, tag)| ClipVertex {
+            at: from.at.lerp(to.at, share),
+            tag,
+            ..from
+        };
+        scratch.polygon.extend([end(first), end(last)]);
+    }
+}
+
 impl ClipScratch {
     /// Keeps what lies inside of the `i`-th of `count` window edges; `heights` are those above
     /// it.
@@ -175,6 +207,39 @@ mod tests {
             };
             assert!(corner.at.distance(SQUARE[i as usize].into()) < 1e-15);
         }
+    }
+
+    #[test]
+    fn a_line_keeps_its_inner_part() {
+        let clip_line = |line: [[f64; 2]; 2]| {
+            let mut scratch = ClipScratch {
+                window: SQUARE.map(DVec2::from).into(),
+                polygon: vec![
+                    ClipVertex::corner(line[0].into(), 0),
+                    ClipVertex::corner(line[1].into(), 1),
+                ],
+                ..Default::default()
+            };
+            intersect_line(&mut scratch);
+            let ends = scratch.polygon.iter();
+            ends.map(|v| (v.at.to_array(), v.tag)).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            clip_line([[-0.5, 0.5], [0.5, 0.5]]),
+            [
+                ([0.0, 0.5], Tag::Crossing(3, 0)),
+                ([0.5, 0.5], Tag::Corner(1))
+            ]
+        );
+        assert_eq!(
+            clip_line([[0.25, 2.0], [0.25, -2.0]]),
+            [
+                ([0.25, 1.0], Tag::Crossing(2, 0)),
+                ([0.25, 0.0], Tag::Crossing(0, 0))
+            ]
+        );
+        assert!(clip_line([[-1.0, 2.0], [2.0, 2.0]]).is_empty());
+        assert!(clip_line([[-1.0, 0.5], [0.5, 2.0]]).is_empty());
     }
 
     #[test]

@@ -137,6 +137,60 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
     contacts
 }
 
+/// The contacts of a polytope with the half-space in front of its deepest vertex, the witness of
+/// `proximity`: corners of the face around it, those nearer than `max_distance` first.
+pub fn half_space_contacts(
+    shape: &impl Polytope,
+    proximity: &Proximity,
+    max_distance: f64,
+    scratch: &mut ClipScratch,
+) -> Contacts {
+    let mut contacts = Contacts::witness(proximity);
+    let (normal, origin) = (proximity.normal, proximity.on_1);
+    let face = facing(shape, proximity.features[0], normal);
+    if shape.face_normal(face).dot(normal) <= EDGE_ON {
+        return contacts;
+    }
+    let distance = |corner: DVec3| proximity.signed_distance - (corner - origin).dot(normal);
+    let contact = |vertex| {
+        let on_1 = shape.vertex(vertex);
+        let distance = distance(on_1);
+        ContactPoint {
+            on_1,
+            on_2: on_1 + normal * distance,
+            distance,
+            features: [Feature::Vertex(vertex), proximity.features[1]],
+        }
+    };
+    let count = shape.face_len(face);
+    let corner = |i: usize| shape.face_vertex(face, i);
+    if count <= MAX_POINTS {
+        let others = (0..count).map(corner);
+        let others = others.filter(|&v| proximity.features[0] != Feature::Vertex(v));
+        for vertex in others.take(MAX_POINTS - 1) {
+            contacts.push(contact(vertex));
+        }
+        return contacts;
+    }
+    let u = normal.any_orthonormal_vector();
+    let v = normal.cross(u);
+    scratch.polygon.clear();
+    scratch.polygon.extend((0..count).map(|i| {
+        let place = shape.vertex(corner(i)) - origin;
+        let mut vertex = ClipVertex::corner(DVec2::new(place.dot(u), place.dot(v)), i);
+        vertex.distance = distance(shape.vertex(corner(i)));
+        vertex
+    }));
+    let (corners, beyond) = reduce::split(&mut scratch.polygon, max_distance);
+    let spread = reduce::spread(corners, DVec2::ZERO, SAME_POINT * shape.radius());
+    for vertex in spread.chain(beyond).take(MAX_POINTS - 1) {
+        if let Tag::Corner(i) = vertex.tag {
+            contacts.push(contact(corner(i.into())));
+        }
+    }
+    contacts
+}
+
 /// The plane of a face over the contact plane: `height(x) = base + slope · x` along the normal.
 #[derive(Clone, Copy)]
 struct FacePlane {
@@ -165,8 +219,8 @@ impl Patch {
             facing(cso.shape_2, proximity.features[1], outward_2),
         ];
         let n1 = cso.shape_1.face_normal(f1);
-        let n2 = cso.pose.direction_to_1(cso.shape_2.face_normal(f2));
         let origin = proximity.on_1;
+        let (n2, offset_2) = plane_2(cso, f2, normal, origin)?;
         let u = normal.any_orthonormal_vector();
         let v = normal.cross(u);
         // `sign` is that of the face's outward normal along the contact normal.
@@ -178,8 +232,6 @@ impl Patch {
                 slope: -DVec2::new(outward.dot(u), outward.dot(v)) / along,
             })
         };
-        let origin_2 = cso.pose.point_to_2(origin);
-        let offset_2 = cso.shape_2.face_offset(f2) - cso.shape_2.face_normal(f2).dot(origin_2);
         Some(Self {
             origin,
             normal,
@@ -210,7 +262,11 @@ impl Patch {
             let vertex = cso.shape_2.vertex(cso.shape_2.face_vertex(f2, i));
             ClipVertex::corner(self.flatten(cso.pose.point_to_1(vertex)), i)
         }));
-        clip::intersect(scratch);
+        if count_2 == 2 {
+            clip::intersect_line(scratch);
+        } else {
+            clip::intersect(scratch);
+        }
     }
 
     /// The corners of the intersection whose distances are within `range`.
@@ -255,6 +311,34 @@ impl Patch {
             on_2: foot + self.normal * h2,
             distance: vertex.distance,
             features,
+        }
+    }
+}
+
+/// The plane of a face of shape 2, in frame 1: its outward normal, and its height over `origin`. A
+/// segment has that of its planes which leans least against the contact normal; a point has none.
+fn plane_2<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    face: FaceId,
+    normal: DVec3,
+    origin: DVec3,
+) -> Option<(DVec3, f64)> {
+    let shape = cso.shape_2;
+    match shape.face_len(face) {
+        1 => None,
+        2 => {
+            let corner = |i| {
+                cso.pose
+                    .point_to_1(shape.vertex(shape.face_vertex(face, i)))
+            };
+            let along = (corner(1) - corner(0)).try_normalize()?;
+            let outward = (along * along.dot(normal) - normal).try_normalize()?;
+            Some((outward, outward.dot(corner(0) - origin)))
+        }
+        _ => {
+            let outward = shape.face_normal(face);
+            let height = shape.face_offset(face) - outward.dot(cso.pose.point_to_2(origin));
+            Some((cso.pose.direction_to_1(outward), height))
         }
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{Support, VertexId};
+use crate::support::{FaceId, Polytope, Support, VertexId};
 
 /// The core of a ball around its origin: that one point. The radius is a border, to be taken off
 /// the distance of the cores.
@@ -31,24 +31,67 @@ impl Support for Ball {
         (DVec3::ZERO, 0)
     }
 
-    #[inline]
-    fn start(&self, _: DVec3) -> VertexId {
-        0
-    }
-
-    #[inline]
-    fn valid_start(&self, _: VertexId) -> VertexId {
-        0
-    }
-
-    #[inline]
-    fn center(&self) -> DVec3 {
-        DVec3::ZERO
-    }
-
     /// The border's: a point has no length that a tolerance could be relative to.
     #[inline]
     fn radius(&self) -> f64 {
         self.radius
+    }
+}
+
+/// The core: one vertex, which is a face without a plane.
+impl Polytope for Ball {
+    #[inline]
+    fn vertex(&self, _: VertexId) -> DVec3 {
+        DVec3::ZERO
+    }
+
+    #[inline]
+    fn neighbors(&self, _: VertexId) -> impl Iterator<Item = VertexId> {
+        std::iter::empty()
+    }
+
+    #[inline]
+    fn has_face(&self, face: FaceId) -> bool {
+        face == 0
+    }
+
+    #[inline]
+    fn face_normal(&self, _: FaceId) -> DVec3 {
+        DVec3::ZERO
+    }
+
+    #[inline]
+    fn face_offset(&self, _: FaceId) -> f64 {
+        f64::INFINITY
+    }
+
+    #[inline]
+    fn face_len(&self, _: FaceId) -> usize {
+        1
+    }
+
+    #[inline]
+    fn face_vertex(&self, _: FaceId, _: usize) -> VertexId {
+        0
+    }
+
+    #[inline]
+    fn face_at(&self, _: VertexId, _: DVec3) -> FaceId {
+        0
+    }
+
+    #[inline]
+    fn face_beside(&self, _: [VertexId; 2], _: DVec3) -> FaceId {
+        0
+    }
+
+    #[inline]
+    fn edge_id(&self, _: VertexId, _: VertexId) -> Option<u32> {
+        None
+    }
+
+    #[inline]
+    fn edge(&self, _: u32) -> Option<[VertexId; 2]> {
+        None
     }
 }

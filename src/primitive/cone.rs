@@ -44,16 +44,6 @@ impl Support for Cone {
     }
 
     #[inline]
-    fn start(&self, _: DVec3) -> VertexId {
-        0
-    }
-
-    #[inline]
-    fn valid_start(&self, _: VertexId) -> VertexId {
-        0
-    }
-
-    #[inline]
     fn center(&self) -> DVec3 {
         self.center
     }

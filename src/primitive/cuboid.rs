@@ -64,11 +64,6 @@ impl Support for CuboidPolytope {
     }
 
     #[inline]
-    fn center(&self) -> DVec3 {
-        DVec3::ZERO
-    }
-
-    #[inline]
     fn radius(&self) -> f64 {
         self.radius
     }

@@ -32,21 +32,6 @@ impl Support for Cylinder {
     }
 
     #[inline]
-    fn start(&self, _: DVec3) -> VertexId {
-        0
-    }
-
-    #[inline]
-    fn valid_start(&self, _: VertexId) -> VertexId {
-        0
-    }
-
-    #[inline]
-    fn center(&self) -> DVec3 {
-        DVec3::ZERO
-    }
-
-    #[inline]
     fn radius(&self) -> f64 {
         self.half_height.hypot(self.rim.radius)
     }

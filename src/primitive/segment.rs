@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{Support, VertexId};
+use crate::support::{FaceId, Polytope, Support, VertexId};
 
 /// The core of a capsule: the segment along its axis. The radius is a border, to be taken off
 /// the distance of the cores. The ids 0 and 1 name the ends.
@@ -41,11 +41,6 @@ impl Support for Segment {
     }
 
     #[inline]
-    fn start(&self, _: DVec3) -> VertexId {
-        0
-    }
-
-    #[inline]
     fn valid_start(&self, vertex: VertexId) -> VertexId {
         vertex & 1
     }
@@ -59,5 +54,63 @@ impl Support for Segment {
     #[inline]
     fn radius(&self) -> f64 {
         0.5 * self.ends[0].distance(self.ends[1]) + self.border
+    }
+}
+
+/// The core: one edge, which is a face without a plane.
+impl Polytope for Segment {
+    #[inline]
+    fn vertex(&self, vertex: VertexId) -> DVec3 {
+        self.ends[vertex as usize]
+    }
+
+    #[inline]
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
+        std::iter::once(vertex ^ 1)
+    }
+
+    #[inline]
+    fn has_face(&self, face: FaceId) -> bool {
+        face == 0
+    }
+
+    #[inline]
+    fn face_normal(&self, _: FaceId) -> DVec3 {
+        DVec3::ZERO
+    }
+
+    #[inline]
+    fn face_offset(&self, _: FaceId) -> f64 {
+        f64::INFINITY
+    }
+
+    #[inline]
+    fn face_len(&self, _: FaceId) -> usize {
+        2
+    }
+
+    #[inline]
+    fn face_vertex(&self, _: FaceId, i: usize) -> VertexId {
+        i as VertexId
+    }
+
+    #[inline]
+    fn face_at(&self, _: VertexId, _: DVec3) -> FaceId {
+        0
+    }
+
+    #[inline]
+    fn face_beside(&self, _: [VertexId; 2], _: DVec3) -> FaceId {
+        0
+    }
+
+    #[inline]
+    fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32> {
+        (from.max(to) == 1 && from != to).then_some(0)
+    }
+
+    #[inline]
+    fn edge(&self, id: u32) -> Option<[VertexId; 2]> {
+        (id == 0).then_some([0, 1])
     }
 }

@@ -50,11 +50,6 @@ impl Support for TrianglePolytope {
     }
 
     #[inline]
-    fn start(&self, _: DVec3) -> VertexId {
-        0
-    }
-
-    #[inline]
     fn valid_start(&self, vertex: VertexId) -> VertexId {
         if vertex < 3 { vertex } else { 0 }
     }

@@ -11,6 +11,7 @@
 //! Without a previous frame GJK and EPA start cold. A stale or wrong memory costs time, never
 //! accuracy: nothing is believed that is not re-evaluated at the present poses.
 
+mod corner;
 mod feature;
 mod walk;
 
@@ -223,6 +224,11 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                     Seeds::new(&[vertex]),
                 ),
                 Verdict::NoPlane => {
+                    let (max, cost) = (self.max_distance, &mut *self.cost);
+                    if let Some(answer) = corner::certify(self.cso, features, max, tolerance, cost)
+                    {
+                        return Some((answer, stage));
+                    }
                     let start = feature::vertices(self.cso, features);
                     let vertex = self.cso.support(normal, start, self.cost);
                     let next = walk::around(self.cso, &vertex, normal);

@@ -126,7 +126,11 @@ impl Ridge {
     ) -> Option<[Feature; 2]> {
         let edge = p.edge_id(self.edge[0], self.edge[1])?;
         let face = p.face_beside(self.edge, outward);
-        let [first, last] = [normal, p.face_normal(face)].map(|n| -q_pose.direction_to_2(n));
+        let beyond = p.face_normal(face);
+        if beyond == DVec3::ZERO {
+            return None; // no plane to turn to
+        }
+        let [first, last] = [normal, beyond].map(|n| -q_pose.direction_to_2(n));
         let corner = q.vertex(self.vertex);
         // The way from the one normal to the other goes from 0 to 1.
         let mut nearest = 1.0;

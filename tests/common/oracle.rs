@@ -64,6 +64,26 @@ impl Solid {
         }
     }
 
+    /// A single point.
+    pub fn point(at: DVec3) -> Self {
+        Self::new(vec![at], &[])
+    }
+
+    /// A segment: an edge whose normals go all around it, in four arcs.
+    pub fn segment(ends: [DVec3; 2]) -> Self {
+        let direction = ends[1] - ends[0];
+        let (u, v) = direction.normalize().any_orthonormal_pair();
+        let edge = |normals| Edge {
+            point: ends[0],
+            direction,
+            normals,
+        };
+        Self {
+            edges: [[u, v], [v, -u], [-u, -v], [-v, u]].map(edge).into(),
+            ..Self::new(ends.into(), &[])
+        }
+    }
+
     /// Its triangles, counter-clockwise from outside.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces

@@ -1,0 +1,50 @@
+//! Hulls over half-spaces: one support against the plane is the whole query.
+
+use glam::DVec3;
+
+use crate::gjk::SeparatingAxis;
+use crate::hull::Hull;
+use crate::pose::RelativePose;
+use crate::query::{Feature, Memory, Proximity};
+use crate::stats::Cost;
+use crate::support::Support;
+
+/// The vertex of a hull that is deepest in the half-space of this outward normal, through the
+/// origin of frame 2.
+pub(super) fn deepest(
+    hull: &Hull,
+    normal_2: DVec3,
+    pose: &RelativePose,
+    memory: &Memory,
+    cost: &mut Cost,
+) -> Proximity {
+    let normal = -pose.direction_to_1(normal_2);
+    let start = match *memory {
+        Memory::Axis(_, [vertex, _]) | Memory::Contact(_, [Feature::Vertex(vertex), _]) => {
+            hull.valid_start(vertex)
+        }
+        _ => hull.start(normal),
+    };
+    let (on_1, vertex) = hull.support(normal, start, cost);
+    let signed_distance = normal_2.dot(pose.point_to_2(on_1));
+    Proximity {
+        signed_distance,
+        normal,
+        on_1,
+        on_2: on_1 + normal * signed_distance,
+        features: [Feature::Vertex(vertex), Feature::Face(0)],
+    }
+}
+
+/// The plane's normal as a separating axis.
+pub(super) fn axis(near: &Proximity) -> SeparatingAxis {
+    let vertex = match near.features[0] {
+        Feature::Vertex(vertex) => vertex,
+        _ => 0,
+    };
+    SeparatingAxis {
+        axis: near.normal,
+        separation: near.signed_distance,
+        ids: [vertex, 0],
+    }
+}

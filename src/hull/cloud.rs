@@ -1,0 +1,80 @@
+//! The surface of a point cloud's hull, by parry's hull builder.
+
+use std::collections::HashMap;
+
+use glam::{DMat3, DVec3, Vec3};
+
+use super::HullError;
+use super::build::require_finite;
+use crate::tolerance::THINNEST;
+
+/// Gives `build` the vertices and triangles around a point cloud.
+///
+/// The builder decides in f32 what is flat, and finds no convex surface around needles and discs
+/// that are too thin for that. Such a cloud is made round first: an affine map changes nothing of
+/// a hull but its coordinates.
+pub(crate) fn surround<T>(
+    points: &[Vec3],
+    build: impl Fn(Vec<Vec3>, &[[u32; 3]]) -> Result<T, HullError>,
+) -> Result<T, HullError> {
+    if points.len() < 4 {
+        return Err(HullError::TooFewPoints);
+    }
+    require_finite(points)?;
+    let as_it_is = || {
+        let (vertices, triangles) = surface(points)?;
+        build(vertices, &triangles)
+    };
+    let made_round = || {
+        let rounded = round(points)?;
+        let (vertices, triangles) = surface(&rounded).ok()?;
+        build(originals(points, &rounded, &vertices), &triangles).ok()
+    };
+    as_it_is().or_else(|error| made_round().ok_or(error))
+}
+
+fn surface(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
+    let (vertices, triangles) =
+        parry3d::transformation::try_convex_hull(points).map_err(|_| HullError::BuilderFailed)?;
+    // Of points on a line the builder keeps the ends.
+    if vertices.len() < 4 {
+        return Err(HullError::Flat);
+    }
+    Ok((vertices, triangles))
+}
+
+/// An affine image of the points with unit covariance; `None` if they span no volume.
+fn round(points: &[Vec3]) -> Option<Vec<Vec3>> {
+    let count = points.len() as f64;
+    let exact = || points.iter().map(|p| p.as_dvec3());
+    let center = exact().sum::<DVec3>() / count;
+    let outer = |d: DVec3| DMat3::from_cols(d * d.x, d * d.y, d * d.z);
+    let covariance = exact().fold(DMat3::ZERO, |sum, p| sum + outer(p - center)) * count.recip();
+    let [x, y, z] = [covariance.x_axis, covariance.y_axis, covariance.z_axis];
+    // Cholesky's factor of the covariance, column by column; its inverse undoes the covariance.
+    let least = THINNEST * THINNEST * (x.x + y.y + z.z);
+    let root = |pivot: f64| (pivot > least).then(|| pivot.sqrt());
+    let xx = root(x.x)?;
+    let (xy, xz) = (x.y / xx, x.z / xx);
+    let yy = root(y.y - xy * xy)?;
+    let yz = (y.z - xy * xz) / yy;
+    let zz = root(z.z - xz * xz - yz * yz)?;
+    let image = |p: DVec3| {
+        let d = p - center;
+        let x = d.x / xx;
+        let y = (d.y - xy * x) / yy;
+        let z = (d.z - xz * x - yz * y) / zz;
+        DVec3::new(x, y, z).as_vec3()
+    };
+    Some(exact().map(image).collect())
+}
+
+/// The points whose images the builder chose as vertices.
+fn originals(points: &[Vec3], images: &[Vec3], chosen: &[Vec3]) -> Vec<Vec3> {
+    let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
+    let of_image: HashMap<_, _> = images.iter().map(bits).zip(points).collect();
+    chosen
+        .iter()
+        .map(|vertex| *of_image[&bits(vertex)])
+        .collect()
+}

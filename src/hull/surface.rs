@@ -1,0 +1,168 @@
+//! A closed triangulated surface as half-edges: what building needs of a mesh, in linear time.
+
+use super::HullError;
+
+/// A side of a triangle, from one vertex to the next: number `3 t + k` is side `k` of triangle `t`.
+pub(super) type HalfEdge = u32;
+
+/// A half-edge with its ends.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Side {
+    pub from: u16,
+    pub to: u16,
+    pub half_edge: HalfEdge,
+}
+
+/// Triangles, counter-clockwise seen from outside, that form one sphere.
+pub(super) struct Surface<'a> {
+    pub triangles: &'a [[u32; 3]],
+    /// By start, then by end; those that leave vertex `v` are `first[v]..first[v + 1]`.
+    sides: Vec<Side>,
+    first: Vec<u32>,
+    /// Where each half-edge stands in `sides`.
+    position: Vec<u32>,
+    /// The same side as the neighbouring triangle has it.
+    twin: Vec<HalfEdge>,
+}
+
+impl<'a> Surface<'a> {
+    /// From triangles over `count` vertices, of which there are no more than 16 bits can name.
+    pub fn new(count: usize, triangles: &'a [[u32; 3]]) -> Result<Self, HullError> {
+        let all = all_sides(triangles);
+        let (by_end, _) = sort(&all, count, |side| side.to);
+        let (sides, first) = sort(&by_end, count, |side| side.from);
+        if let Some(loose) = first.windows(2).position(|pair| pair[0] == pair[1]) {
+            return Err(HullError::LooseVertex(loose));
+        }
+        // Reversed, they come in the same order, if each side has one reverse.
+        let (by_start, _) = sort(&all, count, |side| side.from);
+        let (reversed, _) = sort(&by_start, count, |side| side.to);
+        let mut twin = vec![0; all.len()];
+        let mut position = vec![0; all.len()];
+        let mut before = None;
+        for (i, (side, reverse)) in sides.iter().zip(&reversed).enumerate() {
+            let ends = (side.from, side.to);
+            if ends != (reverse.to, reverse.from) || before == Some(ends) {
+                return Err(HullError::NotManifold);
+            }
+            before = Some(ends);
+            twin[side.half_edge as usize] = reverse.half_edge;
+            position[side.half_edge as usize] = i as u32;
+        }
+        let surface = Self {
+            triangles,
+            sides,
+            first,
+            position,
+            twin,
+        };
+        if surface.is_sphere() {
+            Ok(surface)
+        } else {
+            Err(HullError::NotManifold)
+        }
+    }
+
+    pub fn vertex_count(&self) -> usize {
+        self.first.len() - 1
+    }
+
+    #[inline]
+    pub fn start(&self, h: HalfEdge) -> u32 {
+        self.triangles.as_flattened()[h as usize]
+    }
+
+    #[inline]
+    pub fn end(&self, h: HalfEdge) -> u32 {
+        self.start(next(h))
+    }
+
+    #[inline]
+    pub fn twin(&self, h: HalfEdge) -> HalfEdge {
+        self.twin[h as usize]
+    }
+
+    /// The sides that leave a vertex, by where they end.
+    #[inline]
+    pub fn leaving(&self, vertex: u32) -> &[Side] {
+        let v = vertex as usize;
+        &self.sides[self.first[v] as usize..self.first[v + 1] as usize]
+    }
+
+    /// The place of a half-edge among those that leave its start.
+    #[inline]
+    pub fn place(&self, h: HalfEdge) -> u32 {
+        self.position[h as usize] - self.first[self.start(h) as usize]
+    }
+
+    /// Euler's number is that of a sphere, all of it hangs together, and around each vertex the
+    /// triangles form one fan.
+    fn is_sphere(&self) -> bool {
+        let count = self.vertex_count();
+        if self.triangles.len() + 4 != 2 * count {
+            return false;
+        }
+        let mut seen = vec![false; count];
+        let mut stack = vec![0];
+        seen[0] = true;
+        let mut reached = 0;
+        while let Some(v) = stack.pop() {
+            reached += 1;
+            let around = self.leaving(v);
+            let first = around[0].half_edge;
+            let mut h = first;
+            for (turn, side) in around.iter().enumerate() {
+                if !std::mem::replace(&mut seen[side.to as usize], true) {
+                    stack.push(side.to.into());
+                }
+                h = next(self.twin(h));
+                if (h == first) != (turn + 1 == around.len()) {
+                    return false;
+                }
+            }
+        }
+        reached == count
+    }
+}
+
+/// The next side of the same triangle.
+#[inline]
+pub(super) fn next(h: HalfEdge) -> HalfEdge {
+    if h % 3 == 2 { h - 2 } else { h + 1 }
+}
+
+#[inline]
+pub(super) fn triangle(h: HalfEdge) -> usize {
+    h as usize / 3
+}
+
+fn all_sides(triangles: &[[u32; 3]]) -> Vec<Side> {
+    let sides =
+        |(t, &[a, b, c]): (HalfEdge, &[u32; 3])| [(a, b), (b, c), (c, a)].into_iter().zip(3 * t..);
+    let side = |((from, to), half_edge): ((u32, u32), HalfEdge)| Side {
+        from: from as u16,
+        to: to as u16,
+        half_edge,
+    };
+    (0..).zip(triangles).flat_map(sides).map(side).collect()
+}
+
+/// The sides by a vertex of theirs, otherwise in the order given (a counting sort), and where
+/// those of each vertex begin.
+fn sort(sides: &[Side], count: usize, vertex: impl Fn(&Side) -> u16) -> (Vec<Side>, Vec<u32>) {
+    let mut first = vec![0; count + 1];
+    for side in sides {
+        first[usize::from(vertex(side)) + 1] += 1;
+    }
+    for v in 0..count {
+        first[v + 1] += first[v];
+    }
+    let mut fill = first.clone();
+    let mut sorted = vec![Side::default(); sides.len()];
+    for side in sides {
+        let place = &mut fill[usize::from(vertex(side))];
+        sorted[*place as usize] = *side;
+        *place += 1;
+    }
+    (sorted, first)
+}
