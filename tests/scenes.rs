@@ -15,6 +15,7 @@ const FRAMES: usize = 300;
 fn params(scene: Scene, hull_shape: bool) -> SceneParams {
     let hulls = match scene.hulls() {
         Hulls::Prisms => HullSource::Prism { sides: 12 },
+        Hulls::Boxes => HullSource::Box,
         Hulls::Any | Hulls::None => HullSource::Random { vertices: 40 },
     };
     SceneParams {
@@ -24,6 +25,7 @@ fn params(scene: Scene, hull_shape: bool) -> SceneParams {
         seed: 3,
         recycling: true,
         hull_shape,
+        can_sleep: scene == Scene::Asleep,
     }
 }
 

@@ -4,6 +4,7 @@
 mod files;
 mod measure;
 mod options;
+mod quality;
 mod report;
 mod scenes;
 

@@ -4,6 +4,7 @@ use indicatif::ProgressBar;
 use isa_gjk::{IsaGjkDispatcher, Stats};
 use rapier3d::prelude::{ContactPair, Real};
 
+use crate::quality::{Observer, Quality};
 use crate::scenes::{self, Scene, SceneParams, World};
 
 /// Frames that one world steps before it is the other's turn.
@@ -66,6 +67,8 @@ pub struct Side {
     pub mean_height: f64,
     /// Dynamic bodies asleep at the end.
     pub sleeping: usize,
+    /// What was seen of its contacts; drift and patches in the second half of the frames.
+    pub quality: Quality,
     /// Of all poses at the end.
     pub pose_hash: u64,
 }
@@ -93,17 +96,22 @@ pub fn run(
 
     in_blocks(length.warmup, |frames| {
         for recorder in [&mut default, &mut ours] {
-            (0..frames).for_each(|_| recorder.world.step());
+            (0..frames).for_each(|_| recorder.warm_up());
             progress.inc(frames as u64);
         }
     });
     let before = dispatcher.stats();
-    in_blocks(length.frames, |frames| {
+    for half in [length.frames / 2, length.frames.div_ceil(2)] {
         for recorder in [&mut default, &mut ours] {
-            (0..frames).for_each(|frame| recorder.step(frame > 0));
-            progress.inc(frames as u64);
+            recorder.observer.mark(&recorder.world);
         }
-    });
+        in_blocks(half, |frames| {
+            for recorder in [&mut default, &mut ours] {
+                (0..frames).for_each(|frame| recorder.step(frame > 0));
+                progress.inc(frames as u64);
+            }
+        });
+    }
     Ok(Run {
         default: default.finish(),
         ours: ours.finish(),
@@ -120,6 +128,7 @@ fn in_blocks(frames: usize, mut step: impl FnMut(usize)) {
 
 struct Recorder {
     world: World,
+    observer: Observer,
     frames: Vec<Frame>,
     depths: Vec<Real>,
 }
@@ -127,14 +136,20 @@ struct Recorder {
 impl Recorder {
     fn new(world: World) -> Self {
         Self {
+            observer: Observer::new(&world),
             world,
             frames: Vec::new(),
             depths: Vec::new(),
         }
     }
 
-    fn step(&mut self, counted: bool) {
+    fn warm_up(&mut self) {
         self.world.step();
+        self.observer.step(&self.world);
+    }
+
+    fn step(&mut self, counted: bool) {
+        self.warm_up();
         let mut pairs = 0;
         let mut touching = 0;
         for pair in self.world.physics.narrow_phase.contact_pairs() {
@@ -161,6 +176,7 @@ impl Recorder {
             kinetic_energy: self.world.kinetic_energy(),
             mean_height: self.world.mean_height(),
             sleeping: self.world.sleeping(),
+            quality: self.observer.finish(&self.world),
             pose_hash: self.world.pose_hash(),
         }
     }
