@@ -67,6 +67,14 @@ pub trait Polytope: Support {
         self.edge_id(self.face_vertex(face, i), self.face_vertex(face, next))
     }
 
+    /// The neighbours of a face that lie nearly in its plane, itself among them, if there are
+    /// any; and the name of the polygon around them all, which `face_len`, `face_vertex` and
+    /// `face_edge` know, though it is no face.
+    fn cap(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
+        let _ = face;
+        None
+    }
+
     /// The end vertices of an edge.
     fn edge(&self, id: u32) -> Option<[VertexId; 2]>;
 }

@@ -12,7 +12,7 @@
 //! What another dispatcher or a different pair left there is as good as any other hint.
 
 use glam::{DVec3, Vec3};
-use parry3d::query::ContactManifold;
+use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
 
 use crate::gjk::SeparatingAxis;
@@ -83,6 +83,17 @@ pub(super) fn pack(feature: Feature) -> PackedFeatureId {
         Feature::Edge(e) => EDGE | e,
         Feature::Face(f) => FACE | f,
     })
+}
+
+/// Whether an old contact is that between these features. A vertex that moves on from one face
+/// to the next stays what it is.
+#[inline]
+pub(super) fn is_same<C>(old: &TrackedContact<C>, [id_1, id_2]: [PackedFeatureId; 2]) -> bool {
+    match (old.fid1.0 & KIND, old.fid2.0 & KIND) {
+        (VERTEX, FACE) => old.fid1 == id_1 && id_2.0 & KIND == FACE,
+        (FACE, VERTEX) => old.fid2 == id_2 && id_1.0 & KIND == FACE,
+        _ => old.fid1 == id_1 && old.fid2 == id_2,
+    }
 }
 
 #[inline]

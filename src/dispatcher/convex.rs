@@ -8,7 +8,7 @@ use super::cache;
 use super::pair::{PairVisitor, Scratch};
 use crate::manifold::{self, Contacts};
 use crate::pose::RelativePose;
-use crate::query::{Answer, Proximity, Query};
+use crate::query::{Answer, Feature, Proximity, Query};
 use crate::stats::{Cost, SharedStats};
 use crate::support::{Cso, Polytope};
 
@@ -16,6 +16,13 @@ use crate::support::{Cso, Polytope};
 /// that the shapes do not meet. As parry does, such points are left out beyond this multiple of
 /// the uncorrected depth.
 const ABSURD_DEPTH: f64 = 5.0;
+
+/// An impulse is handed on to another contact no farther than this share of the smaller shape's
+/// radius: between neighbouring corners of a many-sided face, not across the face.
+const HAND_OVER: f64 = 0.25;
+
+/// Of another dispatcher's manifold no more points than these hand their data on.
+const MAX_OLD: usize = 8;
 
 /// Brings a manifold up to date.
 pub(super) struct UpdateManifold<'a, M, C> {
@@ -85,12 +92,18 @@ impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
             cache::write_start(self.manifold, near, cso);
             return;
         }
+        let old = &self.manifold.points;
+        let was_there = |features: [Feature; 2]| {
+            old.iter()
+                .any(|old| cache::is_same(old, features.map(cache::pack)))
+        };
         let contacts = if n1 == unconstrained {
-            manifold::contacts(cso, near, max_distance, scratch.clip)
+            manifold::contacts(cso, near, max_distance, was_there, scratch.clip)
         } else {
             let normal = n1.as_dvec3().normalize();
             let limit = ABSURD_DEPTH * near.signed_distance.min(0.0);
-            manifold::contacts_along(cso, near, normal, [limit, max_distance], scratch.clip)
+            let range = [limit, max_distance];
+            manifold::contacts_along(cso, near, normal, range, was_there, scratch.clip)
         };
         self.manifold.local_n1 = n1;
         self.manifold.local_n2 = n2;
@@ -98,8 +111,7 @@ impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
     }
 }
 
-/// Replaces the manifold's points, and gives each new one the data (the solver's impulses) of
-/// the old one between the same features.
+/// Replaces the manifold's points, and hands the data (the solver's impulses) of the old ones on.
 fn write_points<A: Polytope, B: Polytope, M, C: Default + Copy>(
     manifold: &mut ContactManifold<M, C>,
     cso: &Cso<'_, A, B>,
@@ -107,27 +119,53 @@ fn write_points<A: Polytope, B: Polytope, M, C: Default + Copy>(
     borders: [f64; 2],
 ) {
     let (n1, n2) = (manifold.local_n1.as_dvec3(), manifold.local_n2.as_dvec3());
-    let contacts = contacts.as_slice();
-    let mut data = [C::default(); manifold::MAX_POINTS];
-    for (data, contact) in data.iter_mut().zip(contacts) {
+    let points = &mut manifold.points;
+    let old_len = points.len();
+    points.extend(contacts.as_slice().iter().map(|contact| {
         let [fid1, fid2] = contact.features.map(cache::pack);
-        let mut old = manifold.points.iter();
-        if let Some(old) = old.find(|old| old.fid1 == fid1 && old.fid2 == fid2) {
-            *data = old.data;
+        TrackedContact {
+            local_p1: (contact.on_1 + n1 * borders[0]).as_vec3(),
+            local_p2: (cso.pose.point_to_2(contact.on_2) + n2 * borders[1]).as_vec3(),
+            dist: (contact.distance - borders[0] - borders[1]) as Real,
+            fid1,
+            fid2,
+            data: C::default(),
+        }
+    }));
+    let (old, new) = points.split_at_mut(old_len);
+    hand_over(old, new, HAND_OVER * cso.smaller_radius());
+    points.drain(..old_len);
+}
+
+/// Gives each new contact the data of the old one between the same features. What is left goes to
+/// the nearest of the others within `reach`: an impulse at almost the right place is a better
+/// start for the solver than none.
+fn hand_over<C: Copy>(old: &[TrackedContact<C>], new: &mut [TrackedContact<C>], reach: f64) {
+    let mut left = [true; MAX_OLD];
+    let old = &old[..old.len().min(MAX_OLD)];
+    let mut waiting = [true; manifold::MAX_POINTS];
+    for (new, waiting) in new.iter_mut().zip(&mut waiting) {
+        if let Some(i) = old
+            .iter()
+            .position(|old| cache::is_same(old, [new.fid1, new.fid2]))
+        {
+            new.data = old[i].data;
+            (left[i], *waiting) = (false, false);
         }
     }
-    manifold.points.clear();
-    manifold
-        .points
-        .extend(contacts.iter().zip(data).map(|(contact, data)| {
-            let [fid1, fid2] = contact.features.map(cache::pack);
-            TrackedContact {
-                local_p1: (contact.on_1 + n1 * borders[0]).as_vec3(),
-                local_p2: (cso.pose.point_to_2(contact.on_2) + n2 * borders[1]).as_vec3(),
-                dist: (contact.distance - borders[0] - borders[1]) as Real,
-                fid1,
-                fid2,
-                data,
+    for (new, _) in new.iter_mut().zip(waiting).filter(|(_, waiting)| *waiting) {
+        let mut nearest = (reach * reach) as Real;
+        let mut found = None;
+        for (i, old) in old.iter().enumerate().filter(|(i, _)| left[*i]) {
+            let away = old.local_p1.distance_squared(new.local_p1);
+            let away = away.max(old.local_p2.distance_squared(new.local_p2));
+            if away < nearest {
+                (nearest, found) = (away, Some(i));
             }
-        }));
+        }
+        if let Some(i) = found {
+            new.data = old[i].data;
+            left[i] = false;
+        }
+    }
 }

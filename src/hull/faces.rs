@@ -2,11 +2,12 @@
 
 use glam::{DVec3, Vec3};
 
+use super::caps::{self, Caps};
 use super::graph::EdgeGraph;
 use crate::support::FaceId;
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, SLIVER};
 
-/// Planes, and polygons in compressed rows.
+/// Planes, and polygons in compressed rows: those of the faces, then the outlines of the caps.
 #[derive(Clone, Debug)]
 pub(super) struct Faces {
     planes: Box<[Plane]>,
@@ -14,7 +15,11 @@ pub(super) struct Faces {
     vertices: Box<[u16]>,
     /// The names of the edges that start at `vertices`.
     edges: Box<[u32]>,
+    caps: Caps,
 }
+
+/// The side of an outline that cuts across faces.
+const NO_EDGE: u32 = u32::MAX;
 
 /// A supporting plane. The normal is rounded to f32; the offset is exact for that normal.
 #[derive(Clone, Copy, Debug)]
@@ -63,7 +68,6 @@ impl Faces {
         let regions = Regions::grow(points, triangles, radius);
         let mut first = vec![0];
         let mut vertices = Vec::with_capacity(triangles.len() * 3);
-        let mut edges = Vec::with_capacity(triangles.len() * 3);
         let mut planes = Vec::new();
         let mut face_of = vec![0_u16; triangles.len()];
         for region in regions.all {
@@ -73,21 +77,52 @@ impl Faces {
                 }
                 planes.push(Plane::new(points, &polygon.vertices, graph, radius));
                 vertices.extend_from_slice(&polygon.vertices);
-                let ends = polygon.vertices.iter().cycle().skip(1);
-                edges.extend(polygon.vertices.iter().zip(ends).map(|(&from, &to)| {
-                    // A polygon's sides are sides of triangles, whose edges all have names.
-                    graph.edge_id(from.into(), to.into()).unwrap_or_default()
-                }));
                 first.push(vertices.len() as u32);
             }
         }
-        let faces = Self {
+        let mut faces = Self {
             planes: planes.into(),
             first: first.into(),
             vertices: vertices.into(),
-            edges: edges.into(),
+            edges: Box::default(),
+            caps: Caps::default(),
         };
+        faces.add_caps(points, triangles, &face_of);
+        faces.name_edges(graph);
         (faces, face_of)
+    }
+
+    fn add_caps(&mut self, points: &[Vec3], triangles: &[[u32; 3]], face_of: &[u16]) {
+        let neighbors = triangle_neighbors(triangles);
+        let sides = neighbors.iter().enumerate();
+        let mut beside: Vec<(u16, u16)> = sides
+            .flat_map(|(t, around)| around.map(|other| (face_of[t], face_of[other])))
+            .filter(|(face, other)| face != other)
+            .collect();
+        beside.sort_unstable();
+        beside.dedup();
+        let caps = caps::grow(points, self, &beside);
+        self.caps = Caps::new(&caps, self.len());
+        let (mut first, mut vertices) = (self.first.to_vec(), self.vertices.to_vec());
+        for cap in &caps {
+            vertices.extend_from_slice(&cap.outline);
+            first.push(vertices.len() as u32);
+        }
+        (self.first, self.vertices) = (first.into(), vertices.into());
+    }
+
+    fn name_edges(&mut self, graph: &EdgeGraph) {
+        let polygons = 0..self.first.len() - 1;
+        let edges = polygons.flat_map(|polygon| {
+            let corners = self.polygon(polygon as FaceId);
+            let ends = corners.iter().cycle().skip(1);
+            let name = |(&from, &to): (&u16, &u16)| graph.edge_id(from.into(), to.into());
+            corners
+                .iter()
+                .zip(ends)
+                .map(move |side| name(side).unwrap_or(NO_EDGE))
+        });
+        self.edges = edges.collect();
     }
 
     pub fn len(&self) -> usize {
@@ -110,10 +145,18 @@ impl Faces {
         &self.vertices[self.first[f] as usize..self.first[f + 1] as usize]
     }
 
-    /// The name of the `i`-th edge of a face.
+    /// The name of the `i`-th edge of a face, or of an outline where that is an edge.
     #[inline]
-    pub fn edge(&self, face: FaceId, i: usize) -> u32 {
-        self.edges[self.first[face as usize] as usize + i]
+    pub fn edge(&self, face: FaceId, i: usize) -> Option<u32> {
+        let edge = self.edges[self.first[face as usize] as usize + i];
+        (edge != NO_EDGE).then_some(edge)
+    }
+
+    /// The cap around a face: the name of its outline, and its faces.
+    #[inline]
+    pub fn cap(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
+        let (cap, faces) = self.caps.around(face)?;
+        Some(((self.len() + cap) as FaceId, faces))
     }
 
     /// Of these faces the one that looks most in direction `dir`.
@@ -134,6 +177,7 @@ impl Faces {
             + size_of_val(&*self.first)
             + size_of_val(&*self.vertices)
             + size_of_val(&*self.edges)
+            + self.caps.heap_bytes()
     }
 }
 

@@ -21,6 +21,8 @@ pub(super) struct ClipVertex {
     /// From the first face to the second, along the contact normal.
     pub distance: f64,
     pub tag: Tag,
+    /// Whether the same features met in the previous frame.
+    pub was_there: bool,
     edge: Edge,
 }
 
@@ -38,53 +40,54 @@ impl ClipVertex {
             at,
             distance: 0.0,
             tag: Tag::Corner(i as u16),
+            was_there: false,
             edge: Edge::Polygon(i as u16),
         }
     }
 }
 
-/// Memory for clipping, kept from manifold to manifold so that none of them allocates.
+/// The two polygons, and memory for clipping one by the other.
 #[derive(Clone, Debug, Default)]
-pub struct ClipScratch {
-    pub(super) window: Vec<DVec2>,
-    pub(super) polygon: Vec<ClipVertex>,
+pub(super) struct Polygons {
+    pub window: Vec<DVec2>,
+    pub subject: Vec<ClipVertex>,
     clipped: Vec<ClipVertex>,
     heights: Vec<f64>,
 }
 
-/// Clips `scratch.polygon` by `scratch.window`, which turns counter-clockwise, and leaves the
-/// intersection in `scratch.polygon`.
-pub(super) fn intersect(scratch: &mut ClipScratch) {
-    let count = scratch.window.len();
-    let mut to = scratch.window[0];
+/// Clips the subject by the window, which turns counter-clockwise, and leaves the intersection in
+/// the place of the subject.
+pub(super) fn intersect(polygons: &mut Polygons) {
+    let count = polygons.window.len();
+    let mut to = polygons.window[0];
     for i in (0..count).rev() {
-        let from = scratch.window[i];
+        let from = polygons.window[i];
         let along = to - from;
         to = from;
         // Height over the window's edge: positive inside.
         let mut lowest = f64::INFINITY;
-        scratch.heights.clear();
-        scratch.heights.extend(scratch.polygon.iter().map(|v| {
+        polygons.heights.clear();
+        polygons.heights.extend(polygons.subject.iter().map(|v| {
             let height = along.perp_dot(v.at - from);
             lowest = lowest.min(height);
             height
         }));
         if lowest < 0.0 {
-            scratch.clip_by_edge(i as u16, count as u16);
+            polygons.clip_by_edge(i as u16, count as u16);
         }
     }
 }
 
-impl ClipScratch {
+impl Polygons {
     /// Keeps what lies inside of the `i`-th of `count` window edges; `heights` are those above
     /// it.
     fn clip_by_edge(&mut self, i: u16, count: u16) {
         self.clipped.clear();
-        let (Some(mut vertex), Some(mut height)) = (self.polygon.last(), self.heights.last())
+        let (Some(mut vertex), Some(mut height)) = (self.subject.last(), self.heights.last())
         else {
             return;
         };
-        for (next, next_height) in self.polygon.iter().zip(&self.heights) {
+        for (next, next_height) in self.subject.iter().zip(&self.heights) {
             if *height >= 0.0 {
                 self.clipped.push(*vertex);
             }
@@ -94,6 +97,7 @@ impl ClipScratch {
                     at: vertex.at.lerp(next.at, height / (height - next_height)),
                     distance: 0.0,
                     tag: crossing(vertex.edge, i, count),
+                    was_there: false,
                     edge: if entering {
                         vertex.edge
                     } else {
@@ -103,7 +107,7 @@ impl ClipScratch {
             }
             (vertex, height) = (next, next_height);
         }
-        std::mem::swap(&mut self.polygon, &mut self.clipped);
+        std::mem::swap(&mut self.subject, &mut self.clipped);
     }
 }
 
@@ -123,17 +127,17 @@ mod tests {
     use super::*;
 
     fn clip(window: &[[f64; 2]], polygon: &[[f64; 2]]) -> Vec<ClipVertex> {
-        let mut scratch = ClipScratch {
+        let mut polygons = Polygons {
             window: window.iter().copied().map(DVec2::from).collect(),
-            polygon: polygon
+            subject: polygon
                 .iter()
                 .enumerate()
                 .map(|(i, &p)| ClipVertex::corner(p.into(), i))
                 .collect(),
             ..Default::default()
         };
-        intersect(&mut scratch);
-        scratch.polygon
+        intersect(&mut polygons);
+        polygons.subject
     }
 
     const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
