@@ -85,14 +85,15 @@ pub(super) fn pack(feature: Feature) -> PackedFeatureId {
     })
 }
 
-/// Whether an old contact is that between these features. A vertex that moves on from one face
-/// to the next stays what it is.
+/// Whether an old contact and a new one are between the same features. A vertex that moves on from
+/// one face to the next stays what it is.
 #[inline]
-pub(super) fn is_same<C>(old: &TrackedContact<C>, [id_1, id_2]: [PackedFeatureId; 2]) -> bool {
-    match (old.fid1.0 & KIND, old.fid2.0 & KIND) {
-        (VERTEX, FACE) => old.fid1 == id_1 && id_2.0 & KIND == FACE,
-        (FACE, VERTEX) => old.fid2 == id_2 && id_1.0 & KIND == FACE,
-        _ => old.fid1 == id_1 && old.fid2 == id_2,
+pub(super) fn is_same<C>(old: &TrackedContact<C>, new: &TrackedContact<C>) -> bool {
+    let kinds = |contact: &TrackedContact<C>| [contact.fid1.0 & KIND, contact.fid2.0 & KIND];
+    match kinds(old) {
+        [VERTEX, FACE] => old.fid1 == new.fid1 && kinds(new) == [VERTEX, FACE],
+        [FACE, VERTEX] => old.fid2 == new.fid2 && kinds(new) == [FACE, VERTEX],
+        _ => old.fid1 == new.fid1 && old.fid2 == new.fid2,
     }
 }
 

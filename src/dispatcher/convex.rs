@@ -8,7 +8,7 @@ use super::cache;
 use super::pair::{PairVisitor, Scratch};
 use crate::manifold::{self, Contacts};
 use crate::pose::RelativePose;
-use crate::query::{Answer, Feature, Proximity, Query};
+use crate::query::{Answer, Proximity, Query};
 use crate::stats::{Cost, SharedStats};
 use crate::support::{Cso, Polytope};
 
@@ -16,10 +16,6 @@ use crate::support::{Cso, Polytope};
 /// that the shapes do not meet. As parry does, such points are left out beyond this multiple of
 /// the uncorrected depth.
 const ABSURD_DEPTH: f64 = 5.0;
-
-/// An impulse is handed on to another contact no farther than this share of the smaller shape's
-/// radius: between neighbouring corners of a many-sided face, not across the face.
-const HAND_OVER: f64 = 0.25;
 
 /// Of another dispatcher's manifold no more points than these hand their data on.
 const MAX_OLD: usize = 8;
@@ -92,18 +88,13 @@ impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
             cache::write_start(self.manifold, near, cso);
             return;
         }
-        let old = &self.manifold.points;
-        let was_there = |features: [Feature; 2]| {
-            old.iter()
-                .any(|old| cache::is_same(old, features.map(cache::pack)))
-        };
         let contacts = if n1 == unconstrained {
-            manifold::contacts(cso, near, max_distance, was_there, scratch.clip)
+            manifold::contacts(cso, near, max_distance, scratch.clip)
         } else {
             let normal = n1.as_dvec3().normalize();
             let limit = ABSURD_DEPTH * near.signed_distance.min(0.0);
             let range = [limit, max_distance];
-            manifold::contacts_along(cso, near, normal, range, was_there, scratch.clip)
+            manifold::contacts_along(cso, near, normal, range, scratch.clip)
         };
         self.manifold.local_n1 = n1;
         self.manifold.local_n2 = n2;
@@ -133,37 +124,27 @@ fn write_points<A: Polytope, B: Polytope, M, C: Default + Copy>(
         }
     }));
     let (old, new) = points.split_at_mut(old_len);
-    hand_over(old, new, HAND_OVER * cso.smaller_radius());
+    hand_over(old, new);
     points.drain(..old_len);
 }
 
-/// Gives each new contact the data of the old one between the same features. What is left goes to
-/// the nearest of the others within `reach`: an impulse at almost the right place is a better
-/// start for the solver than none.
-fn hand_over<C: Copy>(old: &[TrackedContact<C>], new: &mut [TrackedContact<C>], reach: f64) {
-    let mut left = [true; MAX_OLD];
+/// Gives each new contact the data of the old one between the same features. What is left over
+/// goes to the nearest of the others, however far: an impulse in a wrong place of the patch is a
+/// better start for the solver than a body that is borne by three contacts of four.
+fn hand_over<C: Copy>(old: &[TrackedContact<C>], new: &mut [TrackedContact<C>]) {
     let old = &old[..old.len().min(MAX_OLD)];
+    let mut left = [true; MAX_OLD];
     let mut waiting = [true; manifold::MAX_POINTS];
     for (new, waiting) in new.iter_mut().zip(&mut waiting) {
-        if let Some(i) = old
-            .iter()
-            .position(|old| cache::is_same(old, [new.fid1, new.fid2]))
-        {
+        if let Some(i) = old.iter().position(|old| cache::is_same(old, new)) {
             new.data = old[i].data;
             (left[i], *waiting) = (false, false);
         }
     }
     for (new, _) in new.iter_mut().zip(waiting).filter(|(_, waiting)| *waiting) {
-        let mut nearest = (reach * reach) as Real;
-        let mut found = None;
-        for (i, old) in old.iter().enumerate().filter(|(i, _)| left[*i]) {
-            let away = old.local_p1.distance_squared(new.local_p1);
-            let away = away.max(old.local_p2.distance_squared(new.local_p2));
-            if away < nearest {
-                (nearest, found) = (away, Some(i));
-            }
-        }
-        if let Some(i) = found {
+        let away = |i: &usize| old[*i].local_p1.distance_squared(new.local_p1);
+        let others = (0..old.len()).filter(|i| left[*i]);
+        if let Some(i) = others.min_by(|i, j| away(i).total_cmp(&away(j))) {
             new.data = old[i].data;
             left[i] = false;
         }

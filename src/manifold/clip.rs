@@ -21,8 +21,6 @@ pub(super) struct ClipVertex {
     /// From the first face to the second, along the contact normal.
     pub distance: f64,
     pub tag: Tag,
-    /// Whether the same features met in the previous frame.
-    pub was_there: bool,
     edge: Edge,
 }
 
@@ -40,7 +38,6 @@ impl ClipVertex {
             at,
             distance: 0.0,
             tag: Tag::Corner(i as u16),
-            was_there: false,
             edge: Edge::Polygon(i as u16),
         }
     }
@@ -97,7 +94,6 @@ impl Polygons {
                     at: vertex.at.lerp(next.at, height / (height - next_height)),
                     distance: 0.0,
                     tag: crossing(vertex.edge, i, count),
-                    was_there: false,
                     edge: if entering {
                         vertex.edge
                     } else {

@@ -5,8 +5,7 @@
 //! projected along the contact normal onto one plane, where their polygons are intersected as
 //! wholes. Every corner of the intersection is a contact: its points lie on the two surfaces, on
 //! one line along the normal. The witness of the query always stays, first in the list; so the
-//! manifold's deepest point is the query's answer. Of the others, those that were there before
-//! are preferred, so that points do not change without need.
+//! manifold's deepest point is the query's answer.
 
 mod clip;
 mod patch;
@@ -83,13 +82,11 @@ impl Contacts {
 }
 
 /// The contacts around the witness of a query along its normal: those nearer than `max_distance`
-/// first, then the nearest of the others, which a solver needs for what moves fast. `was_there`
-/// tells whether these features met in the previous frame.
+/// first, then the nearest of the others, which a solver needs for what moves fast.
 pub fn contacts<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     proximity: &Proximity,
     max_distance: f64,
-    was_there: impl Fn([Feature; 2]) -> bool,
     scratch: &mut ClipScratch,
 ) -> Contacts {
     let mut contacts = Contacts::witness(proximity);
@@ -101,20 +98,19 @@ pub fn contacts<A: Polytope, B: Polytope>(
     // Along the query's normal nothing is deeper than the query's answer.
     patch.measure(&mut polygons.subject, proximity.signed_distance);
     let (corners, beyond) = reduce::split(&mut polygons.subject, max_distance);
-    reduce::mark(corners, |corner| was_there(patch.features(cso, corner)));
     let scale = cso.smaller_radius();
     let same = SAME_POINT * scale;
     let mut first = DVec2::ZERO;
     // Over two faces the distance is linear, so a corner is deepest. A witness that is no corner
     // and no deeper (somewhere inside of two parallel faces) must not take a corner's place.
     if !corners.iter().any(|c| c.at.length_squared() <= same * same)
-        && let Some(deepest) = reduce::deepest(corners, SAME_DEPTH * scale)
+        && let Some(deepest) = reduce::deepest(corners)
         && deepest.distance <= contacts.points[0].distance + SAME_DEPTH * scale
     {
         first = deepest.at;
         contacts.points[0] = patch.contact(cso, deepest);
     }
-    for corner in reduce::choose(corners, first, same) {
+    for corner in reduce::spread(corners, first, same) {
         contacts.push(patch.contact(cso, corner));
     }
     for corner in beyond.iter().take(MAX_POINTS - contacts.len) {
@@ -131,7 +127,6 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
     proximity: &Proximity,
     normal: DVec3,
     range: [f64; 2],
-    was_there: impl Fn([Feature; 2]) -> bool,
     scratch: &mut ClipScratch,
 ) -> Contacts {
     let mut contacts = Contacts::witness(proximity);
@@ -142,11 +137,10 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
         let corners = &mut polygons.subject;
         patch.measure(corners, f64::NEG_INFINITY);
         corners.retain(|corner| (range[0]..=range[1]).contains(&corner.distance));
-        reduce::mark(corners, |corner| was_there(patch.features(cso, corner)));
         let scale = cso.smaller_radius();
-        if let Some(deepest) = reduce::deepest(corners, SAME_DEPTH * scale) {
+        if let Some(deepest) = reduce::deepest(corners) {
             contacts.push(patch.contact(cso, deepest));
-            for corner in reduce::choose(corners, deepest.at, SAME_POINT * scale) {
+            for corner in reduce::spread(corners, deepest.at, SAME_POINT * scale) {
                 contacts.push(patch.contact(cso, corner));
             }
         }
