@@ -67,9 +67,9 @@ pub trait Polytope: Support {
         self.edge_id(self.face_vertex(face, i), self.face_vertex(face, next))
     }
 
-    /// The neighbours of a face that lie nearly in its plane, itself among them, if there are
-    /// any; and the name of the polygon around them all, which `face_len`, `face_vertex` and
-    /// `face_edge` know, though it is no face.
+    /// If a face has neighbours that lie nearly in its plane: the name of a convex polygon around
+    /// them all, which `face_len`, `face_vertex` and `face_edge` know though it is no face; and
+    /// the faces under it.
     fn cap(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
         let _ = face;
         None

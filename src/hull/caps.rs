@@ -3,11 +3,12 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use super::faces::Faces;
+use super::faces::{Faces, triangle_neighbors};
 use crate::support::FaceId;
 use crate::tolerance::CAP_ANGLE_COS;
 
-/// For each face that belongs to a cap, the cap; for each cap, its faces in a row.
+/// For each face that belongs to a cap, the cap; for each cap, the faces under its outline in a
+/// row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Caps {
     /// Empty if there are no caps.
@@ -16,12 +17,19 @@ pub(super) struct Caps {
     faces: Box<[u16]>,
 }
 
+/// A cap has no more members than these, so that one contact is never the work of thousands of
+/// faces. What is left of a larger flat region becomes a cap beside it.
+const MAX_MEMBERS: usize = 64;
+
 /// The face is a cap of its own.
 const ALONE: u16 = u16::MAX;
 
-/// One cap: its faces and the corners of its outline.
+/// One cap.
 pub(super) struct Cap {
-    pub faces: Vec<u16>,
+    members: Vec<u16>,
+    /// Faces that are no members, but lie partly under the outline, where that cuts across a bay.
+    bays: Vec<u16>,
+    /// The corners of the convex outline.
     pub outline: Vec<u16>,
 }
 
@@ -34,10 +42,11 @@ impl Caps {
         let mut first = vec![0];
         let mut faces = Vec::new();
         for (i, cap) in caps.iter().enumerate() {
-            for &face in &cap.faces {
+            for &face in &cap.members {
                 of_face[face as usize] = i as u16;
             }
-            faces.extend_from_slice(&cap.faces);
+            faces.extend_from_slice(&cap.members);
+            faces.extend_from_slice(&cap.bays);
             first.push(faces.len() as u32);
         }
         Self {
@@ -47,7 +56,7 @@ impl Caps {
         }
     }
 
-    /// The number of the cap that `face` belongs to, and all faces of that cap.
+    /// The number of the cap that `face` belongs to, and all faces under its outline.
     #[inline]
     pub fn around(&self, face: FaceId) -> Option<(usize, &[u16])> {
         let cap = *self.of_face.get(face as usize)?;
@@ -63,9 +72,44 @@ impl Caps {
     }
 }
 
-/// Grows caps from the largest faces, which come first. `beside` has the pairs of faces with a
-/// common edge, in both orders, sorted.
-pub(super) fn grow(points: &[Vec3], faces: &Faces, beside: &[(u16, u16)]) -> Vec<Cap> {
+/// What lies next to what: sorted pairs.
+pub(super) struct Neighbors {
+    /// Two faces with a common edge, in both orders.
+    beside: Vec<(u16, u16)>,
+    /// A vertex and a face around it.
+    at_vertex: Vec<(u16, u16)>,
+}
+
+impl Neighbors {
+    pub fn new(triangles: &[[u32; 3]], face_of: &[u16]) -> Self {
+        let around = triangle_neighbors(triangles);
+        let sides = around.iter().enumerate();
+        let mut beside: Vec<_> = sides
+            .flat_map(|(t, around)| around.map(|other| (face_of[t], face_of[other])))
+            .filter(|(face, other)| face != other)
+            .collect();
+        let corners = triangles.iter().zip(face_of);
+        let mut at_vertex: Vec<_> = corners
+            .flat_map(|(triangle, &face)| triangle.map(|vertex| (vertex as u16, face)))
+            .collect();
+        for pairs in [&mut beside, &mut at_vertex] {
+            pairs.sort_unstable();
+            pairs.dedup();
+        }
+        Self { beside, at_vertex }
+    }
+}
+
+fn row(pairs: &[(u16, u16)], first: u16) -> impl Iterator<Item = u16> + '_ {
+    let from = pairs.partition_point(|&(key, _)| key < first);
+    let row = pairs[from..]
+        .iter()
+        .take_while(move |&&(key, _)| key == first);
+    row.map(|&(_, value)| value)
+}
+
+/// Grows caps from the largest faces, which come first.
+pub(super) fn grow(points: &[Vec3], faces: &Faces, neighbors: &Neighbors) -> Vec<Cap> {
     let mut taken = vec![false; faces.len()];
     let mut caps = Vec::new();
     for seed in 0..faces.len() {
@@ -77,12 +121,9 @@ pub(super) fn grow(points: &[Vec3], faces: &Faces, beside: &[(u16, u16)]) -> Vec
         taken[seed] = true;
         let mut next = 0;
         while let Some(&member) = members.get(next) {
-            let from = beside.partition_point(|&(face, _)| face < member);
-            let neighbors = beside[from..]
-                .iter()
-                .take_while(|&&(face, _)| face == member);
-            for &(_, other) in neighbors {
-                if !taken[other as usize] && plane.holds(points, faces, other.into()) {
+            for other in row(&neighbors.beside, member) {
+                let fits = members.len() < MAX_MEMBERS && !taken[other as usize];
+                if fits && plane.holds(points, faces, other.into()) {
                     taken[other as usize] = true;
                     members.push(other);
                 }
@@ -90,13 +131,27 @@ pub(super) fn grow(points: &[Vec3], faces: &Faces, beside: &[(u16, u16)]) -> Vec
             next += 1;
         }
         if members.len() > 1 {
+            let outline = plane.outline(points, faces, &members);
             caps.push(Cap {
-                outline: plane.outline(points, faces, &members),
-                faces: members,
+                bays: bays(faces, neighbors, &members, &outline),
+                members,
+                outline,
             });
         }
     }
     caps
+}
+
+/// The faces that are no members around those vertices of the members that are inside of the
+/// outline.
+fn bays(faces: &Faces, neighbors: &Neighbors, members: &[u16], outline: &[u16]) -> Vec<u16> {
+    let corners = members.iter().flat_map(|&face| faces.polygon(face.into()));
+    let inside = corners.filter(|vertex| !outline.contains(vertex));
+    let around = inside.flat_map(|&vertex| row(&neighbors.at_vertex, vertex));
+    let mut bays: Vec<u16> = around.filter(|face| !members.contains(face)).collect();
+    bays.sort_unstable();
+    bays.dedup();
+    bays
 }
 
 /// The plane of the face that a cap grows from.

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::caps::{self, Caps};
+use super::caps::{self, Caps, Neighbors};
 use super::graph::EdgeGraph;
 use crate::support::FaceId;
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, SLIVER};
@@ -93,15 +93,7 @@ impl Faces {
     }
 
     fn add_caps(&mut self, points: &[Vec3], triangles: &[[u32; 3]], face_of: &[u16]) {
-        let neighbors = triangle_neighbors(triangles);
-        let sides = neighbors.iter().enumerate();
-        let mut beside: Vec<(u16, u16)> = sides
-            .flat_map(|(t, around)| around.map(|other| (face_of[t], face_of[other])))
-            .filter(|(face, other)| face != other)
-            .collect();
-        beside.sort_unstable();
-        beside.dedup();
-        let caps = caps::grow(points, self, &beside);
+        let caps = caps::grow(points, self, &Neighbors::new(triangles, face_of));
         self.caps = Caps::new(&caps, self.len());
         let (mut first, mut vertices) = (self.first.to_vec(), self.vertices.to_vec());
         for cap in &caps {
@@ -152,7 +144,7 @@ impl Faces {
         (edge != NO_EDGE).then_some(edge)
     }
 
-    /// The cap around a face: the name of its outline, and its faces.
+    /// The cap around a face: the name of its outline, and the faces under that.
     #[inline]
     pub fn cap(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
         let (cap, faces) = self.caps.around(face)?;
