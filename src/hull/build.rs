@@ -54,8 +54,9 @@ impl Hull {
         let (center, radius) = center_and_radius(&points, triangles)?;
         require_convex(&points, triangles, radius)?;
 
-        let (faces, face_of) = Faces::new(&points, triangles, &graph, radius);
+        let (mut faces, face_of) = Faces::new(&points, triangles, &graph, radius);
         graph.set_faces(triangles, &face_of);
+        faces.add_caps(&points, &graph);
         let face_len = |f: u16| faces.polygon(f.into()).len();
         let fragile = climb::fragile(&points, &graph, radius, face_len);
         let slope = Slope {

@@ -3,7 +3,8 @@
 
 use glam::{DVec2, DVec3, Vec3};
 
-use super::faces::{Faces, triangle_neighbors};
+use super::faces::Faces;
+use super::graph::EdgeGraph;
 use crate::support::FaceId;
 use crate::tolerance::CAP_ANGLE_COS;
 
@@ -72,44 +73,8 @@ impl Caps {
     }
 }
 
-/// What lies next to what: sorted pairs.
-pub(super) struct Neighbors {
-    /// Two faces with a common edge, in both orders.
-    beside: Vec<(u16, u16)>,
-    /// A vertex and a face around it.
-    at_vertex: Vec<(u16, u16)>,
-}
-
-impl Neighbors {
-    pub fn new(triangles: &[[u32; 3]], face_of: &[u16]) -> Self {
-        let around = triangle_neighbors(triangles);
-        let sides = around.iter().enumerate();
-        let mut beside: Vec<_> = sides
-            .flat_map(|(t, around)| around.map(|other| (face_of[t], face_of[other])))
-            .filter(|(face, other)| face != other)
-            .collect();
-        let corners = triangles.iter().zip(face_of);
-        let mut at_vertex: Vec<_> = corners
-            .flat_map(|(triangle, &face)| triangle.map(|vertex| (vertex as u16, face)))
-            .collect();
-        for pairs in [&mut beside, &mut at_vertex] {
-            pairs.sort_unstable();
-            pairs.dedup();
-        }
-        Self { beside, at_vertex }
-    }
-}
-
-fn row(pairs: &[(u16, u16)], first: u16) -> impl Iterator<Item = u16> + '_ {
-    let from = pairs.partition_point(|&(key, _)| key < first);
-    let row = pairs[from..]
-        .iter()
-        .take_while(move |&&(key, _)| key == first);
-    row.map(|&(_, value)| value)
-}
-
 /// Grows caps from the largest faces, which come first.
-pub(super) fn grow(points: &[Vec3], faces: &Faces, neighbors: &Neighbors) -> Vec<Cap> {
+pub(super) fn grow(points: &[Vec3], faces: &Faces, graph: &EdgeGraph) -> Vec<Cap> {
     let mut taken = vec![false; faces.len()];
     let mut caps = Vec::new();
     for seed in 0..faces.len() {
@@ -121,11 +86,11 @@ pub(super) fn grow(points: &[Vec3], faces: &Faces, neighbors: &Neighbors) -> Vec
         taken[seed] = true;
         let mut next = 0;
         while let Some(&member) = members.get(next) {
-            for other in row(&neighbors.beside, member) {
+            for other in beside(faces, graph, member) {
                 let fits = members.len() < MAX_MEMBERS && !taken[other as usize];
-                if fits && plane.holds(points, faces, other.into()) {
+                if fits && plane.holds(points, faces, other) {
                     taken[other as usize] = true;
-                    members.push(other);
+                    members.push(other as u16);
                 }
             }
             next += 1;
@@ -133,7 +98,7 @@ pub(super) fn grow(points: &[Vec3], faces: &Faces, neighbors: &Neighbors) -> Vec
         if members.len() > 1 {
             let outline = plane.outline(points, faces, &members);
             caps.push(Cap {
-                bays: bays(faces, neighbors, &members, &outline),
+                bays: bays(faces, graph, &members, &outline),
                 members,
                 outline,
             });
@@ -142,13 +107,27 @@ pub(super) fn grow(points: &[Vec3], faces: &Faces, neighbors: &Neighbors) -> Vec
     caps
 }
 
+/// The faces beyond the sides of a face.
+fn beside(faces: &Faces, graph: &EdgeGraph, face: u16) -> impl Iterator<Item = FaceId> {
+    let corners = faces.polygon(face.into());
+    let ends = corners.iter().cycle().skip(1);
+    let sides = corners.iter().zip(ends);
+    sides.filter_map(|(&from, &to)| {
+        let [_, beyond] = graph.faces_beside([from.into(), to.into()])?;
+        Some(beyond)
+    })
+}
+
 /// The faces that are no members around those vertices of the members that are inside of the
 /// outline.
-fn bays(faces: &Faces, neighbors: &Neighbors, members: &[u16], outline: &[u16]) -> Vec<u16> {
+fn bays(faces: &Faces, graph: &EdgeGraph, members: &[u16], outline: &[u16]) -> Vec<u16> {
     let corners = members.iter().flat_map(|&face| faces.polygon(face.into()));
     let inside = corners.filter(|vertex| !outline.contains(vertex));
-    let around = inside.flat_map(|&vertex| row(&neighbors.at_vertex, vertex));
-    let mut bays: Vec<u16> = around.filter(|face| !members.contains(face)).collect();
+    let around = inside.flat_map(|&vertex| graph.faces_at(vertex.into()));
+    let mut bays: Vec<u16> = around
+        .copied()
+        .filter(|face| !members.contains(face))
+        .collect();
     bays.sort_unstable();
     bays.dedup();
     bays

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::caps::{self, Caps, Neighbors};
+use super::caps::{self, Caps};
 use super::graph::EdgeGraph;
 use crate::support::FaceId;
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, SLIVER};
@@ -58,7 +58,8 @@ impl Plane {
 }
 
 impl Faces {
-    /// Joins the `triangles` of `graph`, and says to which face each of them went.
+    /// Joins the `triangles` of `graph`, and says to which face each of them went. Edges have no names
+    /// before [`add_caps`](Self::add_caps).
     pub fn new(
         points: &[Vec3],
         triangles: &[[u32; 3]],
@@ -80,20 +81,19 @@ impl Faces {
                 first.push(vertices.len() as u32);
             }
         }
-        let mut faces = Self {
+        let faces = Self {
             planes: planes.into(),
             first: first.into(),
             vertices: vertices.into(),
             edges: Box::default(),
             caps: Caps::default(),
         };
-        faces.add_caps(points, triangles, &face_of);
-        faces.name_edges(graph);
         (faces, face_of)
     }
 
-    fn add_caps(&mut self, points: &[Vec3], triangles: &[[u32; 3]], face_of: &[u16]) {
-        let caps = caps::grow(points, self, &Neighbors::new(triangles, face_of));
+    /// Finds the caps, when the `graph` knows the faces.
+    pub fn add_caps(&mut self, points: &[Vec3], graph: &EdgeGraph) {
+        let caps = caps::grow(points, self, graph);
         self.caps = Caps::new(&caps, self.len());
         let (mut first, mut vertices) = (self.first.to_vec(), self.vertices.to_vec());
         for cap in &caps {
@@ -101,6 +101,7 @@ impl Faces {
             first.push(vertices.len() as u32);
         }
         (self.first, self.vertices) = (first.into(), vertices.into());
+        self.name_edges(graph);
     }
 
     fn name_edges(&mut self, graph: &EdgeGraph) {
