@@ -76,6 +76,20 @@ pub(super) fn intersect(polygons: &mut Polygons) {
 }
 
 impl Polygons {
+    /// Takes two polygons, of which the window turns counter-clockwise.
+    pub fn fill(
+        &mut self,
+        window: impl Iterator<Item = DVec2>,
+        subject: impl Iterator<Item = DVec2>,
+    ) {
+        self.window.clear();
+        self.window.extend(window);
+        self.subject.clear();
+        let corners = subject.enumerate();
+        self.subject
+            .extend(corners.map(|(i, at)| ClipVertex::corner(at, i)));
+    }
+
     /// Keeps what lies inside of the `i`-th of `count` window edges; `heights` are those above
     /// it.
     fn clip_by_edge(&mut self, i: u16, count: u16) {

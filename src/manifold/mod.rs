@@ -147,3 +147,77 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
     }
     contacts
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use parry3d::math::{Pose, Rotation};
+
+    use super::*;
+    use crate::epa::EpaScratch;
+    use crate::hull::Hull;
+    use crate::pose::RelativePose;
+    use crate::query::{Answer, Memory, Query};
+    use crate::stats::Cost;
+
+    fn prism(sides: u32, radius: f32) -> Hull {
+        let points: Vec<Vec3> = (0..sides)
+            .flat_map(|side| {
+                let (sin, cos) = (std::f32::consts::TAU * side as f32 / sides as f32).sin_cos();
+                [-0.5, 0.5].map(|y| Vec3::new(radius * cos, y, radius * sin))
+            })
+            .collect();
+        Hull::from_points(&points).expect("a solid")
+    }
+
+    fn distance_to(shape: &impl Polytope, feature: Feature, point: DVec3) -> f64 {
+        match feature {
+            Feature::Vertex(v) => shape.vertex(v).distance(point),
+            Feature::Edge(e) => {
+                let [a, b] = shape.edge(e).expect("an edge").map(|v| shape.vertex(v));
+                let along = (point - a).dot(b - a) / (b - a).length_squared();
+                a.lerp(b, along.clamp(0.0, 1.0)).distance(point)
+            }
+            Feature::Face(f) => (shape.face_normal(f).dot(point) - shape.face_offset(f)).abs(),
+        }
+    }
+
+    /// Whichever polygon is the window: one inside of the other, and both overhanging.
+    #[test]
+    fn contacts_lie_on_the_features_they_name() {
+        for (sides, radii) in [
+            ([4, 9], [1.0, 1.0]),
+            ([9, 4], [1.0, 1.0]),
+            ([9, 4], [1.0, 0.3]),
+        ] {
+            let shapes = [prism(sides[0], radii[0]), prism(sides[1], radii[1])];
+            let turn = Rotation::from_scaled_axis(Vec3::new(1e-3, 0.4, 2e-3));
+            let pose = Pose::from_parts(Vec3::new(0.3, 0.99, 0.1), turn);
+            let pose = RelativePose::from_valid(&pose);
+            let cso = Cso {
+                shape_1: &shapes[0],
+                shape_2: &shapes[1],
+                pose: &pose,
+            };
+            let answer = Query {
+                cso: &cso,
+                max_distance: 0.1,
+                scratch: &mut EpaScratch::default(),
+                cost: &mut Cost::default(),
+            }
+            .run(&Memory::None);
+            let Some((Answer::Near(near), _)) = answer else {
+                panic!("no contact: {answer:?}");
+            };
+            let found = contacts(&cso, &near, 0.1, &mut ClipScratch::default());
+            assert_eq!(found.as_slice().len(), MAX_POINTS);
+            for contact in found.as_slice() {
+                let on_2 = pose.point_to_2(contact.on_2);
+                let off = distance_to(&shapes[0], contact.features[0], contact.on_1)
+                    .max(distance_to(&shapes[1], contact.features[1], on_2));
+                // A point between tilted faces leaves its vertex or edge by depth times tilt.
+                assert!(off < 1e-4, "{sides:?}: {contact:?} is {off} off");
+            }
+        }
+    }
+}

@@ -80,6 +80,9 @@ impl Frame {
 pub(super) struct Patch<'s> {
     frame: Frame,
     surfaces: [Surface<'s>; 2],
+    /// The shape, 0 or 1, whose polygon is the window: that with fewer corners, since each of its
+    /// sides is a pass over the other polygon.
+    window: usize,
 }
 
 impl<'s> Patch<'s> {
@@ -115,24 +118,32 @@ impl<'s> Patch<'s> {
             surface(cso.shape_1, f1, 1.0, plane_1, more_1)?,
             surface(cso.shape_2, f2, -1.0, plane_2, more_2)?,
         ];
-        Some(Self { frame, surfaces })
+        let [p1, p2] = [surfaces[0].polygon, surfaces[1].polygon];
+        let window = usize::from(cso.shape_2.face_len(p2) < cso.shape_1.face_len(p1));
+        Some(Self {
+            frame,
+            surfaces,
+            window,
+        })
     }
 
     /// Leaves the intersection of both polygons in `polygons.subject`.
     pub fn clip<A: Polytope, B: Polytope>(&self, cso: &Cso<'_, A, B>, polygons: &mut Polygons) {
         let [f1, f2] = self.polygons();
-        let corner_1 = |i| cso.shape_1.vertex(cso.shape_1.face_vertex(f1, i));
-        let corner_2 = |i| cso.shape_2.vertex(cso.shape_2.face_vertex(f2, i));
-        let flatten_1 = |i| self.frame.flatten(corner_1(i));
-        let flatten_2 = |i| self.frame.flatten(cso.pose.point_to_1(corner_2(i)));
-        polygons.window.clear();
-        polygons
-            .window
-            .extend((0..cso.shape_1.face_len(f1)).map(flatten_1));
-        polygons.subject.clear();
-        polygons
-            .subject
-            .extend((0..cso.shape_2.face_len(f2)).map(|i| ClipVertex::corner(flatten_2(i), i)));
+        let corners_1 = (0..cso.shape_1.face_len(f1)).map(|i| {
+            let corner = cso.shape_1.vertex(cso.shape_1.face_vertex(f1, i));
+            self.frame.flatten(corner)
+        });
+        let corners_2 = (0..cso.shape_2.face_len(f2)).map(|i| {
+            let corner = cso.shape_2.vertex(cso.shape_2.face_vertex(f2, i));
+            self.frame.flatten(cso.pose.point_to_1(corner))
+        });
+        if self.window == 0 {
+            polygons.fill(corners_1, corners_2);
+        } else {
+            // Seen along the normal, shape 2's polygon turns clockwise.
+            polygons.fill(corners_2.rev(), corners_1);
+        }
         clip::intersect(polygons);
     }
 
@@ -171,20 +182,38 @@ impl<'s> Patch<'s> {
         vertex: &ClipVertex,
     ) -> [Feature; 2] {
         let [f1, f2] = self.polygons();
+        let corner = |side: usize, i: usize| {
+            Feature::Vertex(match side {
+                0 => cso.shape_1.face_vertex(f1, i),
+                _ => cso.shape_2.face_vertex(f2, i),
+            })
+        };
+        let edge = |side: usize, i: usize| match side {
+            0 => edge_of(cso.shape_1, f1, i),
+            _ => edge_of(cso.shape_2, f2, i),
+        };
         let face = |side: usize| Feature::Face(self.surfaces[side].plane_at(vertex.at).1);
-        match vertex.tag {
-            Tag::Corner(i) => [
-                face(0),
-                Feature::Vertex(cso.shape_2.face_vertex(f2, i.into())),
-            ],
-            Tag::Window(i) => [
-                Feature::Vertex(cso.shape_1.face_vertex(f1, i.into())),
-                face(1),
-            ],
+        let (window, subject) = (self.window, 1 - self.window);
+        // The window of shape 2 was filled in from its end.
+        let last = cso.shape_2.face_len(f2) - 1;
+        let corner_of_window = |i: usize| if window == 0 { i } else { last - i };
+        let side_of_window = |i: usize| match (window, i) {
+            (0, i) => i,
+            (_, i) if i == last => last,
+            (_, i) => last - 1 - i,
+        };
+        let [of_window, of_subject] = match vertex.tag {
+            Tag::Corner(i) => [face(window), corner(subject, i.into())],
+            Tag::Window(i) => [corner(window, corner_of_window(i.into())), face(subject)],
             Tag::Crossing(i, j) => [
-                edge_of(cso.shape_1, f1, i.into()),
-                edge_of(cso.shape_2, f2, j.into()),
+                edge(window, side_of_window(i.into())),
+                edge(subject, j.into()),
             ],
+        };
+        if window == 0 {
+            [of_window, of_subject]
+        } else {
+            [of_subject, of_window]
         }
     }
 
