@@ -80,6 +80,14 @@ pub trait Polytope: Support {
         self.edge_id(self.face_vertex(face, i), self.face_vertex(face, next))
     }
 
+    /// If a face has neighbours that lie nearly in its plane: the name of a convex polygon around
+    /// them all, which `face_len`, `face_vertex` and `face_edge` know though it is no face; and
+    /// the faces under it.
+    fn cap(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
+        let _ = face;
+        None
+    }
+
     /// The end vertices of an edge.
     fn edge(&self, id: u32) -> Option<[VertexId; 2]>;
 }

@@ -15,6 +15,7 @@ const FRAMES: usize = 300;
 fn params(scene: Scene, hull_shape: bool) -> SceneParams {
     let hulls = match scene.hulls() {
         Hulls::Prisms => HullSource::Prism { sides: 12 },
+        Hulls::Boxes => HullSource::Box,
         Hulls::Any | Hulls::None => HullSource::Random { vertices: 40 },
     };
     SceneParams {
@@ -24,6 +25,7 @@ fn params(scene: Scene, hull_shape: bool) -> SceneParams {
         seed: 3,
         recycling: true,
         hull_shape,
+        can_sleep: scene == Scene::Asleep,
     }
 }
 
@@ -109,12 +111,15 @@ struct Settled {
 /// `None` where nothing settles.
 fn settled(scene: Scene) -> Option<Settled> {
     let (overlap, height) = match scene {
-        Scene::Drum => return None,
+        // The row is still falling.
+        Scene::Drum | Scene::Dominoes => return None,
         // Towers that stand: they start at 2.27 m and 0.49 m.
         Scene::Stack => (0.05, 2.2),
         // The solver's soft contacts give way under sixteen coins by a few millimetres each.
         Scene::Coins => (0.25, 0.41),
         Scene::Asleep => (0.05, 0.35),
+        // Flat on the floor: half of their height of 0.06 m.
+        Scene::Top => (0.1, 0.025),
         // A layer or two, in the hollows of the ground.
         Scene::Trimesh => (0.1, -0.1),
         _ => (0.1, 0.25),

@@ -7,7 +7,7 @@ use plotters::coord::Shift;
 use plotters::prelude::*;
 
 use crate::measure::{BLOCK, Run, Side};
-use crate::report::quantile;
+use crate::quality::quantile;
 use crate::sweep::{Row, Sweep};
 
 const SIZE: (u32, u32) = (800, 440);

@@ -5,6 +5,7 @@ mod chart;
 mod files;
 mod measure;
 mod options;
+mod quality;
 mod report;
 mod scenes;
 mod sweep;

@@ -4,6 +4,7 @@ use indicatif::ProgressBar;
 use isa_gjk::{IsaGjkDispatcher, Stats};
 use rapier3d::prelude::{ContactPair, Real};
 
+use crate::quality::{Observer, Quality};
 use crate::scenes::{self, Scene, SceneParams, World};
 use crate::verify::{Verified, Verifier};
 
@@ -69,6 +70,8 @@ pub struct Side {
     pub mean_height: f64,
     /// Dynamic bodies asleep at the end.
     pub sleeping: usize,
+    /// What was seen of its contacts; drift and patches in the second half of the frames.
+    pub quality: Quality,
     /// Of all poses at the end.
     pub pose_hash: u64,
 }
@@ -98,23 +101,29 @@ pub fn run(
 
     in_blocks(length.warmup, |frames| {
         for recorder in [&mut default, &mut ours] {
-            (0..frames).for_each(|_| recorder.world.step());
+            (0..frames).for_each(|_| recorder.warm_up());
             progress.inc(frames as u64);
         }
     });
     let before = dispatcher.stats();
-    let blocks = length.frames.div_ceil(BLOCK);
+    let halves = [length.frames / 2, length.frames.div_ceil(2)];
+    let blocks = halves.map(|frames| frames.div_ceil(BLOCK)).iter().sum();
     let mut verifier = (length.verify > 0).then(|| Verifier::new(length.verify, blocks));
-    in_blocks(length.frames, |frames| {
+    for half in halves {
         for recorder in [&mut default, &mut ours] {
-            (0..frames).for_each(|frame| recorder.step(frame > 0));
-            progress.inc(frames as u64);
+            recorder.observer.mark(&recorder.world);
         }
-        // Between blocks: the frame that finds its data evicted by this is not counted.
-        if let Some(verifier) = &mut verifier {
-            verifier.check(&ours.world);
-        }
-    });
+        in_blocks(half, |frames| {
+            for recorder in [&mut default, &mut ours] {
+                (0..frames).for_each(|frame| recorder.step(frame > 0));
+                progress.inc(frames as u64);
+            }
+            // Between blocks: the frame that finds its data evicted by this is not counted.
+            if let Some(verifier) = &mut verifier {
+                verifier.check(&ours.world);
+            }
+        });
+    }
     Ok(Run {
         default: default.finish(),
         ours: ours.finish(),
@@ -132,6 +141,7 @@ fn in_blocks(frames: usize, mut step: impl FnMut(usize)) {
 
 struct Recorder {
     world: World,
+    observer: Observer,
     frames: Vec<Frame>,
     depths: Vec<Real>,
 }
@@ -139,14 +149,20 @@ struct Recorder {
 impl Recorder {
     fn new(world: World) -> Self {
         Self {
+            observer: Observer::new(&world),
             world,
             frames: Vec::new(),
             depths: Vec::new(),
         }
     }
 
-    fn step(&mut self, counted: bool) {
+    fn warm_up(&mut self) {
         self.world.step();
+        self.observer.step(&self.world);
+    }
+
+    fn step(&mut self, counted: bool) {
+        self.warm_up();
         let mut pairs = 0;
         let mut touching = 0;
         for pair in self.world.physics.narrow_phase.contact_pairs() {
@@ -173,6 +189,7 @@ impl Recorder {
             kinetic_energy: self.world.kinetic_energy(),
             mean_height: self.world.mean_height(),
             sleeping: self.world.sleeping(),
+            quality: self.observer.finish(&self.world),
             pose_hash: self.world.pose_hash(),
         }
     }

@@ -13,17 +13,17 @@ use crate::scenes::{HullSource, Hulls, Scene, SceneParams};
 #[derive(Parser)]
 #[command(name = "compare")]
 pub struct Options {
-    /// What is in the world: drum, pile, stack, coins, asleep, cuboids, balls, mixed, compound
-    /// or trimesh
+    /// What is in the world: drum, pile, stack, coins, wall, dominoes, spin, top, rolling, asleep,
+    /// cuboids, balls, mixed, compound or trimesh
     #[arg(long, default_value_t = Scene::Drum)]
     pub scene: Scene,
 
-    /// The hulls: random, prism, real, or the path of an .obj file [default: random; stack and
-    /// coins stand on prisms]
+    /// The hulls: random, prism, box, real, or the path of an .obj file [default: random; stack,
+    /// coins, spin and top have prisms]
     #[arg(long)]
     shape: Option<Shape>,
 
-    /// Sides of a prism [default: half of the vertices; 64 for coins]
+    /// Sides of a prism [default: half of the vertices; 64 for coins and tops]
     #[arg(long, value_parser = value_parser!(u32).range(3..=10_000))]
     sides: Option<u32>,
 
@@ -54,6 +54,10 @@ pub struct Options {
     /// Whether rapier may keep the contacts of pairs that hardly moved
     #[arg(long, value_enum, default_value_t = Switch::On)]
     recycling: Switch,
+
+    /// Let bodies fall asleep, to see whether and when they do; sleeping ones cost nothing
+    #[arg(long)]
+    sleep: bool,
 
     /// Give the world of isa-gjk `HullShape` colliders; the default one keeps plain hulls
     #[arg(long)]
@@ -113,6 +117,7 @@ pub enum Sweep {
 enum Shape {
     Random,
     Prism,
+    Box,
     Real,
     File(PathBuf),
 }
@@ -124,9 +129,10 @@ impl FromStr for Shape {
         match text {
             "random" => Ok(Self::Random),
             "prism" => Ok(Self::Prism),
+            "box" => Ok(Self::Box),
             "real" => Ok(Self::Real),
             _ if text.to_ascii_lowercase().ends_with(".obj") => Ok(Self::File(text.into())),
-            _ => Err("give random, prism, real or the path of an .obj file".to_owned()),
+            _ => Err("give random, prism, box, real or the path of an .obj file".to_owned()),
         }
     }
 }
@@ -147,6 +153,7 @@ impl Options {
             seed: self.seed,
             recycling: self.recycling == Switch::On,
             hull_shape: self.hull_shape,
+            can_sleep: self.sleep || self.scene == Scene::Asleep,
         })
     }
 
@@ -163,8 +170,9 @@ impl Options {
         let shape = match (&self.shape, self.scene.hulls()) {
             (Some(shape), Hulls::Any) => shape,
             (None | Some(Shape::Prism), Hulls::Prisms) => &Shape::Prism,
+            (None, Hulls::Boxes) => &Shape::Box,
             (None, Hulls::Any | Hulls::None) => &Shape::Random,
-            (Some(_), Hulls::Prisms | Hulls::None) => {
+            (Some(_), Hulls::Prisms | Hulls::Boxes | Hulls::None) => {
                 return Err(format!(
                     "the scene {} makes its own shapes: leave --shape out, or choose another scene",
                     self.scene
@@ -178,10 +186,11 @@ impl Options {
             Shape::Random => HullSource::Random { vertices },
             Shape::Prism => HullSource::Prism {
                 sides: self.sides.unwrap_or(match self.scene {
-                    Scene::Coins => 64,
+                    Scene::Coins | Scene::Top => 64,
                     _ => (vertices / 2).max(3),
                 }),
             },
+            Shape::Box => HullSource::Box,
             Shape::Real => HullSource::Real,
             Shape::File(path) => HullSource::File(path.clone()),
         })

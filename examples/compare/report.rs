@@ -6,6 +6,7 @@ use isa_gjk::{Stage, Stats};
 use serde::Serialize;
 
 use crate::measure::{BLOCK, Frame, Run, RunLength, Side};
+use crate::quality::quantile;
 use crate::scenes::{Hulls, Scene, SceneParams};
 use crate::verify::Verified;
 
@@ -68,7 +69,7 @@ impl Report {
             scene: scene.name(),
             hulls: match scene.hulls() {
                 Hulls::None => "no hulls".to_owned(),
-                Hulls::Prisms | Hulls::Any => params.hulls.to_string(),
+                Hulls::Prisms | Hulls::Boxes | Hulls::Any => params.hulls.to_string(),
             },
             bodies: params.bodies,
             seed: params.seed,
@@ -77,7 +78,7 @@ impl Report {
             warmup: length.warmup,
             frames: length.frames,
             repeat: runs.len(),
-            figures: figures(runs),
+            figures: figures(scene, runs),
             default_pose_hash: format!("{:016x}", first.default.pose_hash),
             our_pose_hash: format!("{:016x}", first.ours.pose_hash),
             repeatable: runs.iter().all(|run| hashes(run) == hashes(first)),
@@ -97,10 +98,10 @@ impl Report {
     }
 }
 
-fn figures(runs: &[Run]) -> Vec<Figure> {
+fn figures(scene: Scene, runs: &[Run]) -> Vec<Figure> {
     let time = |name, of: fn(&Frame) -> f64| Figure::time(name, runs, of);
     let other = |name, unit, of: fn(&Side) -> f64| Figure::other(name, unit, runs, of);
-    vec![
+    let mut figures = vec![
         time("whole step", |frame| frame.times.step),
         time("broad phase", |frame| frame.times.broad_phase),
         time("narrow phase", |frame| frame.times.narrow_phase),
@@ -110,12 +111,41 @@ fn figures(runs: &[Run]) -> Vec<Figure> {
         other("touching pairs", "", |side| {
             per_frame(side, |f| f.touching as f64)
         }),
-        other("deepest penetration", "mm", |side| depth(side, 1.0)),
-        other("99th percentile", "mm", |side| depth(side, 0.99)),
+        other("reported penetration, worst", "mm", |side| depth(side, 1.0)),
+        other("reported, 99th percentile", "mm", |side| depth(side, 0.99)),
         other("kinetic energy at the end", "J", |side| side.kinetic_energy),
         other("mean height at the end", "m", |side| side.mean_height),
+        other("true overlap, 99th perc.", "mm", |side| {
+            side.quality.overlap * 1e3
+        }),
+        other("median speed at the end", "mm/s", |side| {
+            side.quality.median_speed * 1e3
+        }),
+        other("largest drift at the end", "mm", |side| {
+            side.quality.drift * 1e3
+        }),
         other("asleep at the end", "", |side| side.sleeping as f64),
-    ]
+        other("all asleep after steps", "", |side| {
+            side.quality
+                .asleep_after
+                .map_or(f64::INFINITY, |n| n as f64)
+        }),
+    ];
+    if scene.stands() {
+        figures.extend([
+            other("largest tilt at the end", "°", |side| side.quality.tilt),
+            other("patch off centre", "radii", |side| {
+                side.quality.patch_offset
+            }),
+            other("patch moves per step", "radii", |side| {
+                side.quality.patch_step
+            }),
+            other("in the worst step", "radii", |side| {
+                side.quality.worst_patch_step
+            }),
+        ]);
+    }
+    figures
 }
 
 impl Figure {
@@ -176,15 +206,6 @@ pub fn per_frame(side: &Side, of: impl Fn(&Frame) -> f64) -> f64 {
 fn depth(side: &Side, share: f64) -> f64 {
     let depths = side.depths.iter().map(|d| f64::from(d.max(0.0)) * 1e3);
     quantile(depths.collect(), share)
-}
-
-/// The value that a `share` of the others do not exceed; zero if there are none.
-pub fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
-    let Some(last) = values.len().checked_sub(1) else {
-        return 0.0;
-    };
-    let rank = (last as f64 * share).round() as usize;
-    *values.select_nth_unstable_by(rank, f64::total_cmp).1
 }
 
 impl fmt::Display for Report {

@@ -8,7 +8,8 @@ use serde::Serialize;
 
 use crate::measure::{self, Run, Side};
 use crate::options::Options;
-use crate::report::{per_frame, quantile};
+use crate::quality::quantile;
+use crate::report::per_frame;
 use crate::scenes::SceneParams;
 
 /// Evenly spaced on a logarithmic axis.

@@ -80,6 +80,7 @@ impl Options {
             Hulls::Any | Hulls::None => HullSource::Random {
                 vertices: self.vertices,
             },
+            Hulls::Boxes => HullSource::Box,
             Hulls::Prisms => HullSource::Prism {
                 sides: (self.vertices / 2).max(3),
             },
@@ -90,6 +91,7 @@ impl Options {
             seed: self.seed,
             recycling: true,
             hull_shape: false,
+            can_sleep: true,
             hulls,
         }
     }

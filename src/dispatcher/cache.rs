@@ -13,7 +13,7 @@
 //! What another dispatcher or a different pair left there is as good as any other hint.
 
 use glam::{DVec3, Vec3};
-use parry3d::query::ContactManifold;
+use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
 
 use crate::gjk::SeparatingAxis;
@@ -95,6 +95,18 @@ pub(super) fn pack(feature: Feature) -> PackedFeatureId {
         Feature::Edge(e) => EDGE | e,
         Feature::Face(f) => FACE | f,
     })
+}
+
+/// Whether an old contact and a new one are between the same features. A vertex that moves on from
+/// one face to the next stays what it is.
+#[inline]
+pub(super) fn is_same<C>(old: &TrackedContact<C>, new: &TrackedContact<C>) -> bool {
+    let kinds = |contact: &TrackedContact<C>| [contact.fid1.0 & KIND, contact.fid2.0 & KIND];
+    match kinds(old) {
+        [VERTEX, FACE] => old.fid1 == new.fid1 && kinds(new) == [VERTEX, FACE],
+        [FACE, VERTEX] => old.fid2 == new.fid2 && kinds(new) == [FACE, VERTEX],
+        _ => old.fid1 == new.fid1 && old.fid2 == new.fid2,
+    }
 }
 
 #[inline]

@@ -19,6 +19,9 @@ use crate::support::{Cso, Polytope};
 /// the uncorrected depth.
 const ABSURD_DEPTH: f64 = 5.0;
 
+/// Of another dispatcher's manifold no more points than these hand their data on.
+const MAX_OLD: usize = 8;
+
 /// Brings a manifold up to date.
 pub(super) struct UpdateManifold<'a, M, C> {
     pub pos12: &'a Pose,
@@ -139,9 +142,7 @@ impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
     }
 }
 
-/// Replaces the manifold's points, and gives each new one the data (the solver's impulses) of
-/// the old one between the same features. A single point that goes on from feature to feature of
-/// one shape (a ball that rolls) stays the same contact.
+/// Replaces the manifold's points, and hands the data (the solver's impulses) of the old ones on.
 fn write_points<M, C: Default + Copy>(
     manifold: &mut ContactManifold<M, C>,
     pose: &RelativePose,
@@ -151,36 +152,48 @@ fn write_points<M, C: Default + Copy>(
 ) {
     let normals = cache::ordered([manifold.local_n1, manifold.local_n2], swapped);
     let [n1, n2] = normals.map(|n| n.as_dvec3());
-    let contacts = contacts.as_slice();
-    let single = manifold.points.len() == 1 && contacts.len() == 1;
-    let mut data = [C::default(); manifold::MAX_POINTS];
-    for (data, contact) in data.iter_mut().zip(contacts) {
+    let points = &mut manifold.points;
+    let old_len = points.len();
+    points.extend(contacts.as_slice().iter().map(|contact| {
         let [fid1, fid2] = cache::ordered(contact.features.map(cache::pack), swapped);
-        let mut old = manifold.points.iter();
-        if let Some(old) = old.find(|old| match (old.fid1 == fid1, old.fid2 == fid2) {
-            (true, true) => true,
-            (same_1, same_2) => single && (same_1 || same_2),
-        }) {
-            *data = old.data;
+        let points = [
+            contact.on_1 + n1 * borders[0],
+            pose.point_to_2(contact.on_2) + n2 * borders[1],
+        ];
+        let [local_p1, local_p2] = cache::ordered(points.map(|p| p.as_vec3()), swapped);
+        TrackedContact {
+            local_p1,
+            local_p2,
+            dist: (contact.distance - borders[0] - borders[1]) as Real,
+            fid1,
+            fid2,
+            data: C::default(),
+        }
+    }));
+    let (old, new) = points.split_at_mut(old_len);
+    hand_over(old, new);
+    points.drain(..old_len);
+}
+
+/// Gives each new contact the data of the old one between the same features. What is left over
+/// goes to the nearest of the others, however far: an impulse in a wrong place of the patch is a
+/// better start for the solver than a body that is borne by three contacts of four.
+fn hand_over<C: Copy>(old: &[TrackedContact<C>], new: &mut [TrackedContact<C>]) {
+    let old = &old[..old.len().min(MAX_OLD)];
+    let mut left = [true; MAX_OLD];
+    let mut waiting = [true; manifold::MAX_POINTS];
+    for (new, waiting) in new.iter_mut().zip(&mut waiting) {
+        if let Some(i) = old.iter().position(|old| cache::is_same(old, new)) {
+            new.data = old[i].data;
+            (left[i], *waiting) = (false, false);
         }
     }
-    manifold.points.clear();
-    manifold
-        .points
-        .extend(contacts.iter().zip(data).map(|(contact, data)| {
-            let [fid1, fid2] = cache::ordered(contact.features.map(cache::pack), swapped);
-            let points = [
-                contact.on_1 + n1 * borders[0],
-                pose.point_to_2(contact.on_2) + n2 * borders[1],
-            ];
-            let [local_p1, local_p2] = cache::ordered(points.map(|p| p.as_vec3()), swapped);
-            TrackedContact {
-                local_p1,
-                local_p2,
-                dist: (contact.distance - borders[0] - borders[1]) as Real,
-                fid1,
-                fid2,
-                data,
-            }
-        }));
+    for (new, _) in new.iter_mut().zip(waiting).filter(|(_, waiting)| *waiting) {
+        let away = |i: &usize| old[*i].local_p1.distance_squared(new.local_p1);
+        let others = (0..old.len()).filter(|i| left[*i]);
+        if let Some(i) = others.min_by(|i, j| away(i).total_cmp(&away(j))) {
+            new.data = old[i].data;
+            left[i] = false;
+        }
+    }
 }

@@ -59,8 +59,9 @@ impl Hull {
         let (center, radius) = center_and_radius(&exact, triangles)?;
         require_convex(&exact, &surface, radius)?;
 
-        let (faces, face_of) = Faces::new(&exact, &surface, radius);
+        let (mut faces, face_of) = Faces::new(&exact, &surface, radius);
         let graph = EdgeGraph::new(&surface, &face_of);
+        faces.add_caps(&exact, &graph);
         let face_len = |f: u16| faces.polygon(f.into()).len();
         let fragile = climb::fragile(&exact, &graph, radius, face_len);
         let slope = Slope {

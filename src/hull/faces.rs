@@ -4,12 +4,13 @@ use std::cmp::Reverse;
 
 use glam::{DVec3, Vec3};
 
-use super::graph::edge_name;
+use super::caps::{self, Caps};
+use super::graph::{EdgeGraph, edge_name};
 use super::surface::{HalfEdge, Surface, next, triangle};
 use crate::support::FaceId;
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, SLIVER};
 
-/// Planes, and polygons in compressed rows.
+/// Planes, and polygons in compressed rows: those of the faces, then the outlines of the caps.
 #[derive(Clone, Debug)]
 pub(super) struct Faces {
     planes: Box<[Plane]>,
@@ -17,7 +18,11 @@ pub(super) struct Faces {
     vertices: Box<[u16]>,
     /// The names of the edges that start at `vertices`.
     edges: Box<[u32]>,
+    caps: Caps,
 }
+
+/// The side of an outline that cuts across faces.
+const NO_EDGE: u32 = u32::MAX;
 
 /// A supporting plane. The normal is rounded to f32; the offset is exact for that normal.
 #[derive(Clone, Copy, Debug)]
@@ -99,8 +104,33 @@ impl Faces {
             first: first.into(),
             vertices: vertices.into(),
             edges: edges.into(),
+            caps: Caps::default(),
         };
         (faces, face_of)
+    }
+
+    /// Finds the caps, when the `graph` knows the faces.
+    pub fn add_caps(&mut self, points: &[DVec3], graph: &EdgeGraph) {
+        let caps = caps::grow(points, self, graph);
+        if caps.is_empty() {
+            return;
+        }
+        self.caps = Caps::new(&caps, self.len());
+        let mut first = std::mem::take(&mut self.first).into_vec();
+        let mut vertices = std::mem::take(&mut self.vertices).into_vec();
+        let mut edges = std::mem::take(&mut self.edges).into_vec();
+        for cap in &caps {
+            let ends = cap.outline.iter().cycle().skip(1);
+            edges.extend(
+                cap.outline
+                    .iter()
+                    .zip(ends)
+                    .map(|(&from, &to)| graph.edge_id(from.into(), to.into()).unwrap_or(NO_EDGE)),
+            );
+            vertices.extend_from_slice(&cap.outline);
+            first.push(vertices.len() as u32);
+        }
+        (self.first, self.vertices, self.edges) = (first.into(), vertices.into(), edges.into());
     }
 
     pub fn len(&self) -> usize {
@@ -123,10 +153,18 @@ impl Faces {
         &self.vertices[self.first[f] as usize..self.first[f + 1] as usize]
     }
 
-    /// The name of the `i`-th edge of a face.
+    /// The name of the `i`-th edge of a face, or of an outline where that is an edge.
     #[inline]
-    pub fn edge(&self, face: FaceId, i: usize) -> u32 {
-        self.edges[self.first[face as usize] as usize + i]
+    pub fn edge(&self, face: FaceId, i: usize) -> Option<u32> {
+        let edge = self.edges[self.first[face as usize] as usize + i];
+        (edge != NO_EDGE).then_some(edge)
+    }
+
+    /// The cap around a face: the name of its outline, and the faces under that.
+    #[inline]
+    pub fn cap(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
+        let (cap, faces) = self.caps.around(face)?;
+        Some(((self.len() + cap) as FaceId, faces))
     }
 
     /// Of these faces the one that looks most in direction `dir`.
@@ -147,6 +185,7 @@ impl Faces {
             + size_of_val(&*self.first)
             + size_of_val(&*self.vertices)
             + size_of_val(&*self.edges)
+            + self.caps.heap_bytes()
     }
 }
 

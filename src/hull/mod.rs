@@ -1,6 +1,7 @@
 //! Convex hulls prepared for coherent queries: edge graph, faces and start-vertex table.
 
 mod build;
+mod caps;
 mod climb;
 mod cloud;
 mod error;
@@ -154,7 +155,12 @@ impl Polytope for Hull {
 
     #[inline]
     fn face_edge(&self, face: FaceId, i: usize) -> Option<u32> {
-        Some(self.faces.edge(face, i))
+        self.faces.edge(face, i)
+    }
+
+    #[inline]
+    fn cap(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
+        self.faces.cap(face)
     }
 
     #[inline]

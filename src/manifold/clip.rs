@@ -1,5 +1,10 @@
-//! Intersection of two convex polygons in the plane, edge by edge (Sutherland, Hodgman,
-//! *Reentrant polygon clipping*, CACM 17(1), 1974), keeping track of what each corner is made of.
+//! Intersection of two convex polygons in the plane, keeping track of what each corner is made of.
+//!
+//! Each side of the window is a line that the other polygon crosses twice or not at all (Cyrus,
+//! Beck, *Generalized two- and three-dimensional clipping*, Computers & Graphics 3(1), 1978). So
+//! one pass over the heights of its corners above these lines tells which of them are inside,
+//! where sides cross, and which corners of the window are between two crossings. The corners come
+//! in no order, and where the polygons' corners meet there may be two for one.
 
 use glam::DVec2;
 
@@ -10,143 +15,122 @@ pub(super) enum Tag {
     Corner(u16),
     /// A corner of the window.
     Window(u16),
-    /// An edge of the window crossing an edge of the clipped polygon.
+    /// A side of the window crossing a side of the clipped polygon.
     Crossing(u16, u16),
 }
 
-/// A corner while clipping: its place in the contact plane and the edge that leaves it.
+/// A corner of the intersection: its place in the contact plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ClipVertex {
     pub at: DVec2,
     /// From the first face to the second, along the contact normal.
     pub distance: f64,
     pub tag: Tag,
-    edge: Edge,
-}
-
-/// A side of the growing intersection, named by the corner where it starts in its polygon.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Edge {
-    Polygon(u16),
-    Window(u16),
 }
 
 impl ClipVertex {
-    /// The `i`-th corner of the polygon to be clipped.
-    pub fn corner(at: DVec2, i: usize) -> Self {
+    pub fn new(at: DVec2, tag: Tag) -> Self {
         Self {
             at,
             distance: 0.0,
-            tag: Tag::Corner(i as u16),
-            edge: Edge::Polygon(i as u16),
-        }
-    }
-}
-
-/// Memory for clipping, kept from manifold to manifold so that none of them allocates.
-#[derive(Clone, Debug, Default)]
-pub struct ClipScratch {
-    pub(super) window: Vec<DVec2>,
-    pub(super) polygon: Vec<ClipVertex>,
-    clipped: Vec<ClipVertex>,
-    heights: Vec<f64>,
-}
-
-/// Clips `scratch.polygon` by `scratch.window`, which turns counter-clockwise, and leaves the
-/// intersection in `scratch.polygon`.
-pub(super) fn intersect(scratch: &mut ClipScratch) {
-    let count = scratch.window.len();
-    let mut to = scratch.window[0];
-    for i in (0..count).rev() {
-        let from = scratch.window[i];
-        let along = to - from;
-        to = from;
-        // Height over the window's edge: positive inside.
-        let mut lowest = f64::INFINITY;
-        scratch.heights.clear();
-        scratch.heights.extend(scratch.polygon.iter().map(|v| {
-            let height = along.perp_dot(v.at - from);
-            lowest = lowest.min(height);
-            height
-        }));
-        if lowest < 0.0 {
-            scratch.clip_by_edge(i as u16, count as u16);
-        }
-    }
-}
-
-/// Clips the line between the two corners of `scratch.polygon` by `scratch.window`, and leaves the
-/// ends of what is inside, in their order.
-pub(super) fn intersect_line(scratch: &mut ClipScratch) {
-    let [from, to] = [scratch.polygon[0], scratch.polygon[1]];
-    let count = scratch.window.len();
-    // Where the part inside begins and ends, as shares of the way.
-    let (mut first, mut last) = ((0.0, from.tag), (1.0, to.tag));
-    for i in 0..count {
-        let corner = scratch.window[i];
-        let along = scratch.window[(i + 1) % count] - corner;
-        let [height, next_height] = [from, to].map(|v| along.perp_dot(v.at - corner));
-        let tag = Tag::Crossing(i as u16, 0);
-        let at = height / (height - next_height);
-        if height < 0.0 && next_height < 0.0 {
-            first.0 = f64::INFINITY;
-        } else if height < 0.0 && at > first.0 {
-            first = (at, tag);
-        } else if next_height < 0.0 && at < last.0 {
-            last = (at, tag);
-        }
-    }
-    scratch.polygon.clear();
-    if first.0 <= last.0 {
-        let end = |(share, tag)| ClipVertex {
-            at: from.at.lerp(to.at, share),
             tag,
-            ..from
-        };
-        scratch.polygon.extend([end(first), end(last)]);
-    }
-}
-
-impl ClipScratch {
-    /// Keeps what lies inside of the `i`-th of `count` window edges; `heights` are those above
-    /// it.
-    fn clip_by_edge(&mut self, i: u16, count: u16) {
-        self.clipped.clear();
-        let (Some(mut vertex), Some(mut height)) = (self.polygon.last(), self.heights.last())
-        else {
-            return;
-        };
-        for (next, next_height) in self.polygon.iter().zip(&self.heights) {
-            if *height >= 0.0 {
-                self.clipped.push(*vertex);
-            }
-            if (*height < 0.0) != (*next_height < 0.0) {
-                let entering = *height < 0.0;
-                self.clipped.push(ClipVertex {
-                    at: vertex.at.lerp(next.at, height / (height - next_height)),
-                    distance: 0.0,
-                    tag: crossing(vertex.edge, i, count),
-                    edge: if entering {
-                        vertex.edge
-                    } else {
-                        Edge::Window(i)
-                    },
-                });
-            }
-            (vertex, height) = (next, next_height);
         }
-        std::mem::swap(&mut self.polygon, &mut self.clipped);
     }
 }
 
-/// What the crossing of a side with the `i`-th window edge is.
-fn crossing(side: Edge, i: u16, count: u16) -> Tag {
-    match side {
-        Edge::Polygon(j) => Tag::Crossing(i, j),
-        // Two window edges meet where the later one starts; the first and the last are
-        // neighbours, too.
-        Edge::Window(j) if i.abs_diff(j) + 1 == count => Tag::Window(0),
-        Edge::Window(j) => Tag::Window(i.max(j)),
+/// The two polygons, and memory for clipping one by the other.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Polygons {
+    /// Counter-clockwise.
+    pub window: Vec<DVec2>,
+    /// Clockwise, as a second shape's face is seen; perhaps only the two ends of a line.
+    pub subject: Vec<DVec2>,
+    /// The corners of the intersection.
+    pub corners: Vec<ClipVertex>,
+    inside: Vec<bool>,
+}
+
+/// Leaves the intersection of window and subject in the corners. What lies outside by less than
+/// `slack` counts as inside, so that corners that meet up to rounding are never lost.
+pub(super) fn intersect(polygons: &mut Polygons, slack: f64) {
+    let Polygons {
+        window,
+        subject,
+        corners,
+        inside,
+    } = polygons;
+    corners.clear();
+    inside.clear();
+    inside.resize(subject.len(), true);
+    let ends = window.iter().cycle().skip(1);
+    for (i, (&from, &to)) in window.iter().zip(ends).enumerate() {
+        let side = Side::new(from, to, slack);
+        side.cut(i as u16, subject, inside, corners);
+    }
+    for (j, (&at, &inside)) in subject.iter().zip(&*inside).enumerate() {
+        if inside {
+            corners.push(ClipVertex::new(at, Tag::Corner(j as u16)));
+        }
+    }
+}
+
+/// A side of the window.
+struct Side {
+    from: DVec2,
+    along: DVec2,
+    /// How far below the line still counts as inside, in heights; the same along it, as a share.
+    slack: f64,
+    overhang: f64,
+}
+
+impl Side {
+    fn new(from: DVec2, to: DVec2, slack: f64) -> Self {
+        let along = to - from;
+        // Heights are multiplied by the length; the sum of coordinates is not shorter.
+        let length = along.x.abs() + along.y.abs();
+        Self {
+            from,
+            along,
+            slack: slack * length,
+            overhang: slack / length,
+        }
+    }
+
+    /// Positive inside.
+    fn height(&self, p: DVec2) -> f64 {
+        self.along.perp_dot(p - self.from)
+    }
+
+    /// Strikes the subject's corners below this side from `inside`, and adds what the `i`-th
+    /// side has of the intersection's corners.
+    fn cut(&self, i: u16, subject: &[DVec2], inside: &mut [bool], corners: &mut Vec<ClipVertex>) {
+        // Where the subject begins and ends on this line, as shares of the side.
+        let (mut begin, mut end) = (f64::INFINITY, f64::NEG_INFINITY);
+        // A line of two corners has no side back.
+        let mut j = if subject.len() == 2 {
+            0
+        } else {
+            subject.len() - 1
+        };
+        let mut last = subject[j];
+        let mut last_height = self.height(last);
+        for (next, (&corner, inside)) in subject.iter().zip(inside).enumerate() {
+            let height = self.height(corner);
+            *inside &= height >= -self.slack;
+            if (height < 0.0) != (last_height < 0.0) {
+                let at = last.lerp(corner, last_height / (last_height - height));
+                let share = self.along.dot(at - self.from) / self.along.length_squared();
+                begin = begin.min(share);
+                end = end.max(share);
+                if -self.overhang <= share && share <= 1.0 + self.overhang {
+                    corners.push(ClipVertex::new(at, Tag::Crossing(i, j as u16)));
+                }
+            }
+            (last, last_height, j) = (corner, height, next);
+        }
+        if begin <= 0.0 && 0.0 <= end {
+            corners.push(ClipVertex::new(self.from, Tag::Window(i)));
+        }
     }
 }
 
@@ -154,34 +138,31 @@ fn crossing(side: Edge, i: u16, count: u16) -> Tag {
 mod tests {
     use super::*;
 
-    fn clip(window: &[[f64; 2]], polygon: &[[f64; 2]]) -> Vec<ClipVertex> {
-        let mut scratch = ClipScratch {
-            window: window.iter().copied().map(DVec2::from).collect(),
-            polygon: polygon
-                .iter()
-                .enumerate()
-                .map(|(i, &p)| ClipVertex::corner(p.into(), i))
-                .collect(),
+    const SLACK: f64 = 1e-9;
+    const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+
+    /// Both polygons counter-clockwise.
+    fn clip(window: &[DVec2], polygon: &[DVec2]) -> Vec<ClipVertex> {
+        let mut polygons = Polygons {
+            window: window.to_vec(),
+            subject: polygon.iter().rev().copied().collect(),
             ..Default::default()
         };
-        intersect(&mut scratch);
-        scratch.polygon
+        intersect(&mut polygons, SLACK);
+        polygons.corners
     }
 
-    const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    fn clip_square(polygon: [[f64; 2]; 4]) -> Vec<(DVec2, Tag)> {
+        let corners = clip(&SQUARE.map(DVec2::from), &polygon.map(DVec2::from));
+        let mut corners: Vec<_> = corners.iter().map(|v| (v.at, v.tag)).collect();
+        corners.sort_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.0.y.total_cmp(&b.0.y)));
+        corners
+    }
 
     #[test]
     fn shifted_squares_meet_in_a_corner_of_each_and_two_crossings() {
-        let shifted = SQUARE.map(|[x, y]| [x + 0.5, y + 0.5]);
-        // The clipped polygon turns the other way, as that of the second shape does.
-        let reversed = [shifted[3], shifted[2], shifted[1], shifted[0]];
-        let mut corners: Vec<_> = clip(&SQUARE, &reversed)
-            .iter()
-            .map(|v| (v.at, v.tag))
-            .collect();
-        corners.sort_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.0.y.total_cmp(&b.0.y)));
         assert_eq!(
-            corners,
+            clip_square(SQUARE.map(|[x, y]| [x + 0.5, y + 0.5])),
             [
                 (DVec2::new(0.5, 0.5), Tag::Corner(3)),
                 (DVec2::new(0.5, 1.0), Tag::Crossing(2, 3)),
@@ -193,36 +174,29 @@ mod tests {
 
     #[test]
     fn a_window_inside_of_the_polygon_is_the_intersection() {
-        let around = SQUARE.map(|[x, y]| [4.0 * x - 2.0, 4.0 * y - 2.0]);
-        let corners = clip(&SQUARE, &around);
-        let mut tags: Vec<_> = corners.iter().map(|v| v.tag).collect();
-        tags.sort_by_key(|tag| match tag {
-            Tag::Window(i) => *i,
-            _ => u16::MAX,
-        });
-        assert_eq!(tags, [0, 1, 2, 3].map(Tag::Window));
-        for corner in corners {
-            let Tag::Window(i) = corner.tag else {
-                unreachable!()
-            };
-            assert!(corner.at.distance(SQUARE[i as usize].into()) < 1e-15);
-        }
+        let corners = clip_square(SQUARE.map(|[x, y]| [4.0 * x - 2.0, 4.0 * y - 2.0]));
+        let tags: Vec<Tag> = corners.iter().map(|corner| corner.1).collect();
+        assert_eq!(tags, [0, 3, 1, 2].map(Tag::Window));
+    }
+
+    #[test]
+    fn disjoint_polygons_do_not_meet() {
+        assert!(clip_square(SQUARE.map(|[x, y]| [x + 3.0, y])).is_empty());
     }
 
     #[test]
     fn a_line_keeps_its_inner_part() {
         let clip_line = |line: [[f64; 2]; 2]| {
-            let mut scratch = ClipScratch {
+            let mut polygons = Polygons {
                 window: SQUARE.map(DVec2::from).into(),
-                polygon: vec![
-                    ClipVertex::corner(line[0].into(), 0),
-                    ClipVertex::corner(line[1].into(), 1),
-                ],
+                subject: line.map(DVec2::from).into(),
                 ..Default::default()
             };
-            intersect_line(&mut scratch);
-            let ends = scratch.polygon.iter();
-            ends.map(|v| (v.at.to_array(), v.tag)).collect::<Vec<_>>()
+            intersect(&mut polygons, SLACK);
+            let corners = polygons.corners.iter();
+            corners
+                .map(|v| (v.at.to_array(), v.tag))
+                .collect::<Vec<_>>()
         };
         assert_eq!(
             clip_line([[-0.5, 0.5], [0.5, 0.5]]),
@@ -234,17 +208,74 @@ mod tests {
         assert_eq!(
             clip_line([[0.25, 2.0], [0.25, -2.0]]),
             [
-                ([0.25, 1.0], Tag::Crossing(2, 0)),
-                ([0.25, 0.0], Tag::Crossing(0, 0))
+                ([0.25, 0.0], Tag::Crossing(0, 0)),
+                ([0.25, 1.0], Tag::Crossing(2, 0))
             ]
         );
         assert!(clip_line([[-1.0, 2.0], [2.0, 2.0]]).is_empty());
         assert!(clip_line([[-1.0, 0.5], [0.5, 2.0]]).is_empty());
     }
 
+    fn ellipse(count: usize, dice: &mut oorandom::Rand64) -> Vec<DVec2> {
+        let [x, y, a, b, turn] = [(); 5].map(|()| dice.rand_float());
+        (0..count)
+            .map(|i| {
+                let angle = std::f64::consts::TAU * (i as f64 / count as f64 + turn);
+                let (sin, cos) = angle.sin_cos();
+                DVec2::new(x + (0.2 + a) * cos, y + (0.2 + b) * sin)
+            })
+            .collect()
+    }
+
+    fn is_inside(p: DVec2, polygon: &[DVec2], slack: f64) -> bool {
+        let ends = polygon.iter().cycle().skip(1);
+        let mut sides = polygon.iter().zip(ends);
+        sides.all(|(&a, &b)| (b - a).perp_dot(p - a) >= -slack * (b - a).length())
+    }
+
+    /// All corners that the intersection can have, by trying every pair of sides.
+    fn candidates(a: &[DVec2], b: &[DVec2]) -> Vec<DVec2> {
+        let side = |p: &[DVec2], i: usize| (p[i], p[(i + 1) % p.len()]);
+        let mut found: Vec<DVec2> = a.iter().chain(b).copied().collect();
+        for i in 0..a.len() {
+            for j in 0..b.len() {
+                let ((p, p2), (q, q2)) = (side(a, i), side(b, j));
+                let (d, e) = (p2 - p, q2 - q);
+                if d.perp_dot(e).abs() > 1e-12 {
+                    found.push(p + d * ((q - p).perp_dot(e) / d.perp_dot(e)));
+                }
+            }
+        }
+        found.retain(|&p| is_inside(p, a, 1e-12) && is_inside(p, b, 1e-12));
+        found
+    }
+
+    /// Against brute force; also for equal polygons, and those that are turned or shifted by a
+    /// rounding.
     #[test]
-    fn disjoint_polygons_do_not_meet() {
-        let far = SQUARE.map(|[x, y]| [x + 3.0, y]);
-        assert!(clip(&SQUARE, &far).is_empty());
+    fn the_corners_are_those_of_the_intersection() {
+        let mut dice = oorandom::Rand64::new(2);
+        for round in 0..2000 {
+            let counts = [(); 2].map(|()| dice.rand_range(3..12) as usize);
+            let window = ellipse(counts[0], &mut dice);
+            let tiny = DVec2::splat(1e-16 * (round % 7) as f64);
+            let polygon = match round % 4 {
+                0 => window.iter().map(|&p| p + tiny).collect(),
+                1 => window
+                    .iter()
+                    .map(|p| p.rotate(DVec2::from_angle(tiny.x)))
+                    .collect(),
+                _ => ellipse(counts[1], &mut dice),
+            };
+            let corners = clip(&window, &polygon);
+            for corner in &corners {
+                assert!(is_inside(corner.at, &window, 2.0 * SLACK));
+                assert!(is_inside(corner.at, &polygon, 2.0 * SLACK));
+            }
+            for p in candidates(&window, &polygon) {
+                let near = |v: &ClipVertex| v.at.distance(p) < 1e-6;
+                assert!(corners.iter().any(near), "round {round}: {p} is missing");
+            }
+        }
     }
 }

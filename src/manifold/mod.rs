@@ -1,26 +1,25 @@
 //! The contact manifold: the two faces in contact, clipped against each other and reduced to
 //! four points.
 //!
-//! Both faces are projected along the contact normal onto one plane, where their polygons are
-//! intersected as wholes. Every corner of the intersection is a contact: its points lie on the
-//! two faces, on one line along the normal. The witness of the query always stays, first in the
-//! list; so the manifold's deepest point is the query's answer.
+//! A face with neighbours that lie nearly in its plane is taken together with them. Both are
+//! projected along the contact normal onto one plane, where their polygons are intersected as
+//! wholes. Every corner of the intersection is a contact: its points lie on the two surfaces, on
+//! one line along the normal. The witness of the query always stays, first in the list; so the
+//! manifold's deepest point is the query's answer.
 
 mod clip;
+mod patch;
 mod reduce;
 
 use glam::{DVec2, DVec3};
 
 use crate::query::{Feature, Proximity};
-use crate::support::{Cso, FaceId, Polytope};
-pub use clip::ClipScratch;
-use clip::{ClipVertex, Tag};
+use crate::support::{Cso, Polytope};
+use clip::{ClipVertex, Polygons, Tag};
+use patch::{FacePlane, Patch};
 
 /// More points than this add no stiffness to a rigid contact.
 pub const MAX_POINTS: usize = 4;
-
-/// A face seen edge-on (cosine to the contact normal) has no usable projection.
-const EDGE_ON: f64 = 0.05;
 
 /// Contacts nearer to each other than this share of the smaller shape's radius are one.
 const SAME_POINT: f64 = 1e-3;
@@ -28,6 +27,17 @@ const SAME_POINT: f64 = 1e-3;
 /// A corner of the contact patch is as deep as the witness up to this share of the smaller
 /// shape's radius: the rounding of f32 face planes.
 const SAME_DEPTH: f64 = 2e-6;
+
+/// A corner outside of the other polygon by less than this share of the smaller shape's radius
+/// counts as inside: far above the rounding of f64, far below that of f32 coordinates.
+const CLIP_SLACK: f64 = 1e-9;
+
+/// Memory for manifolds, kept from one to the next so that none of them allocates.
+#[derive(Clone, Debug, Default)]
+pub struct ClipScratch {
+    planes: [Vec<FacePlane>; 2],
+    polygons: Polygons,
+}
 
 /// One contact: a point on each shape, on a line along the manifold's normal. In frame 1.
 #[derive(Clone, Copy, Debug)]
@@ -84,16 +94,18 @@ pub fn contacts<A: Polytope, B: Polytope>(
     scratch: &mut ClipScratch,
 ) -> Contacts {
     let mut contacts = Contacts::witness(proximity);
-    let Some(patch) = Patch::new(cso, proximity, proximity.normal) else {
+    let ClipScratch { planes, polygons } = scratch;
+    let Some(patch) = Patch::new(cso, proximity, proximity.normal, planes) else {
         return contacts;
     };
-    patch.clip(cso, scratch);
-    let corners = patch.corners_within(scratch, [f64::NEG_INFINITY, f64::INFINITY]);
-    let (corners, beyond) = reduce::split(corners, max_distance);
     let scale = cso.smaller_radius();
+    let corners = patch.clip(cso, polygons, CLIP_SLACK * scale);
+    // Along the query's normal nothing is deeper than the query's answer.
+    patch.measure(corners, proximity.signed_distance);
+    let (corners, beyond) = reduce::split(corners, max_distance);
     let same = SAME_POINT * scale;
     let mut first = DVec2::ZERO;
-    // Over the patch the distance is linear, so a corner is deepest. A witness that is no corner
+    // Over two faces the distance is linear, so a corner is deepest. A witness that is no corner
     // and no deeper (somewhere inside of two parallel faces) must not take a corner's place.
     if !corners.iter().any(|c| c.at.length_squared() <= same * same)
         && let Some(deepest) = reduce::deepest(corners)
@@ -123,13 +135,15 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
 ) -> Contacts {
     let mut contacts = Contacts::witness(proximity);
     contacts.len = 0;
-    if let Some(patch) = Patch::new(cso, proximity, normal) {
-        patch.clip(cso, scratch);
-        let corners = patch.corners_within(scratch, range);
+    let ClipScratch { planes, polygons } = scratch;
+    if let Some(patch) = Patch::new(cso, proximity, normal, planes) {
+        let scale = cso.smaller_radius();
+        let corners = patch.clip(cso, polygons, CLIP_SLACK * scale);
+        patch.measure(corners, f64::NEG_INFINITY);
+        corners.retain(|corner| (range[0]..=range[1]).contains(&corner.distance));
         if let Some(deepest) = reduce::deepest(corners) {
             contacts.push(patch.contact(cso, deepest));
-            let same = SAME_POINT * cso.smaller_radius();
-            for corner in reduce::spread(corners, deepest.at, same) {
+            for corner in reduce::spread(corners, deepest.at, SAME_POINT * scale) {
                 contacts.push(patch.contact(cso, corner));
             }
         }
@@ -147,8 +161,8 @@ pub fn half_space_contacts(
 ) -> Contacts {
     let mut contacts = Contacts::witness(proximity);
     let (normal, origin) = (proximity.normal, proximity.on_1);
-    let face = facing(shape, proximity.features[0], normal);
-    if shape.face_normal(face).dot(normal) <= EDGE_ON {
+    let face = patch::facing(shape, proximity.features[0], normal);
+    if shape.face_normal(face).dot(normal) <= patch::EDGE_ON {
         return contacts;
     }
     let distance = |corner: DVec3| proximity.signed_distance - (corner - origin).dot(normal);
@@ -162,8 +176,9 @@ pub fn half_space_contacts(
             features: [Feature::Vertex(vertex), proximity.features[1]],
         }
     };
-    let count = shape.face_len(face);
-    let corner = |i: usize| shape.face_vertex(face, i);
+    let polygon = shape.cap(face).map_or(face, |(outline, _)| outline);
+    let count = shape.face_len(polygon);
+    let corner = |i: usize| shape.face_vertex(polygon, i);
     if count <= MAX_POINTS {
         let others = (0..count).map(corner);
         let others = others.filter(|&v| proximity.features[0] != Feature::Vertex(v));
@@ -174,14 +189,18 @@ pub fn half_space_contacts(
     }
     let u = normal.any_orthonormal_vector();
     let v = normal.cross(u);
-    scratch.polygon.clear();
-    scratch.polygon.extend((0..count).map(|i| {
-        let place = shape.vertex(corner(i)) - origin;
-        let mut vertex = ClipVertex::corner(DVec2::new(place.dot(u), place.dot(v)), i);
-        vertex.distance = distance(shape.vertex(corner(i)));
-        vertex
+    let corners = &mut scratch.polygons.corners;
+    corners.clear();
+    corners.extend((0..count).map(|i| {
+        let corner = shape.vertex(corner(i));
+        let place = corner - origin;
+        ClipVertex {
+            at: DVec2::new(place.dot(u), place.dot(v)),
+            distance: distance(corner),
+            tag: Tag::Corner(i as u16),
+        }
     }));
-    let (corners, beyond) = reduce::split(&mut scratch.polygon, max_distance);
+    let (corners, beyond) = reduce::split(corners, max_distance);
     let spread = reduce::spread(corners, DVec2::ZERO, SAME_POINT * shape.radius());
     for vertex in spread.chain(beyond).take(MAX_POINTS - 1) {
         if let Tag::Corner(i) = vertex.tag {
@@ -191,175 +210,76 @@ pub fn half_space_contacts(
     contacts
 }
 
-/// The plane of a face over the contact plane: `height(x) = base + slope · x` along the normal.
-#[derive(Clone, Copy)]
-struct FacePlane {
-    face: FaceId,
-    base: f64,
-    slope: DVec2,
-}
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+    use parry3d::math::{Pose, Rotation};
 
-/// The two faces in the contact plane, whose origin is the witness point of shape 1.
-struct Patch {
-    origin: DVec3,
-    normal: DVec3,
-    axes: [DVec3; 2],
-    planes: [FacePlane; 2],
-}
+    use super::*;
+    use crate::epa::EpaScratch;
+    use crate::hull::Hull;
+    use crate::pose::RelativePose;
+    use crate::query::{Answer, Memory, Query};
+    use crate::stats::Cost;
 
-impl Patch {
-    fn new<A: Polytope, B: Polytope>(
-        cso: &Cso<'_, A, B>,
-        proximity: &Proximity,
-        normal: DVec3,
-    ) -> Option<Self> {
-        let outward_2 = -cso.pose.direction_to_2(normal);
-        let [f1, f2] = [
-            facing(cso.shape_1, proximity.features[0], normal),
-            facing(cso.shape_2, proximity.features[1], outward_2),
-        ];
-        let n1 = cso.shape_1.face_normal(f1);
-        let origin = proximity.on_1;
-        let (n2, offset_2) = plane_2(cso, f2, normal, origin)?;
-        let u = normal.any_orthonormal_vector();
-        let v = normal.cross(u);
-        // `sign` is that of the face's outward normal along the contact normal.
-        let plane = |face, sign: f64, outward: DVec3, offset: f64| {
-            let along = outward.dot(normal);
-            (along * sign > EDGE_ON).then(|| FacePlane {
-                face,
-                base: offset / along,
-                slope: -DVec2::new(outward.dot(u), outward.dot(v)) / along,
+    fn prism(sides: u32, radius: f32) -> Hull {
+        let points: Vec<Vec3> = (0..sides)
+            .flat_map(|side| {
+                let (sin, cos) = (std::f32::consts::TAU * side as f32 / sides as f32).sin_cos();
+                [-0.5, 0.5].map(|y| Vec3::new(radius * cos, y, radius * sin))
             })
-        };
-        Some(Self {
-            origin,
-            normal,
-            axes: [u, v],
-            planes: [
-                plane(f1, 1.0, n1, cso.shape_1.face_offset(f1) - n1.dot(origin))?,
-                plane(f2, -1.0, n2, offset_2)?,
-            ],
-        })
+            .collect();
+        Hull::from_points(&points).expect("a solid")
     }
 
-    fn flatten(&self, p: DVec3) -> DVec2 {
-        let p = p - self.origin;
-        DVec2::new(p.dot(self.axes[0]), p.dot(self.axes[1]))
-    }
-
-    /// Leaves the intersection of both polygons in `scratch`.
-    fn clip<A: Polytope, B: Polytope>(&self, cso: &Cso<'_, A, B>, scratch: &mut ClipScratch) {
-        let [f1, f2] = [self.planes[0].face, self.planes[1].face];
-        let count_1 = cso.shape_1.face_len(f1);
-        let count_2 = cso.shape_2.face_len(f2);
-        scratch.window.clear();
-        scratch.window.extend(
-            (0..count_1).map(|i| self.flatten(cso.shape_1.vertex(cso.shape_1.face_vertex(f1, i)))),
-        );
-        scratch.polygon.clear();
-        scratch.polygon.extend((0..count_2).map(|i| {
-            let vertex = cso.shape_2.vertex(cso.shape_2.face_vertex(f2, i));
-            ClipVertex::corner(self.flatten(cso.pose.point_to_1(vertex)), i)
-        }));
-        if count_2 == 2 {
-            clip::intersect_line(scratch);
-        } else {
-            clip::intersect(scratch);
+    fn distance_to(shape: &impl Polytope, feature: Feature, point: DVec3) -> f64 {
+        match feature {
+            Feature::Vertex(v) => shape.vertex(v).distance(point),
+            Feature::Edge(e) => {
+                let [a, b] = shape.edge(e).expect("an edge").map(|v| shape.vertex(v));
+                let along = (point - a).dot(b - a) / (b - a).length_squared();
+                a.lerp(b, along.clamp(0.0, 1.0)).distance(point)
+            }
+            Feature::Face(f) => (shape.face_normal(f).dot(point) - shape.face_offset(f)).abs(),
         }
     }
 
-    /// The corners of the intersection whose distances are within `range`.
-    fn corners_within<'s>(
-        &self,
-        scratch: &'s mut ClipScratch,
-        range: [f64; 2],
-    ) -> &'s mut [ClipVertex] {
-        scratch.polygon.retain_mut(|corner| {
-            let [h1, h2] = self.heights(corner.at);
-            corner.distance = h2 - h1;
-            (range[0]..=range[1]).contains(&corner.distance)
-        });
-        &mut scratch.polygon
-    }
-
-    /// The heights of both faces at a place in the contact plane.
-    fn heights(&self, at: DVec2) -> [f64; 2] {
-        self.planes.map(|p| p.base + p.slope.dot(at))
-    }
-
-    fn contact<A: Polytope, B: Polytope>(
-        &self,
-        cso: &Cso<'_, A, B>,
-        vertex: &ClipVertex,
-    ) -> ContactPoint {
-        let [f1, f2] = [self.planes[0].face, self.planes[1].face];
-        let corner_1 = |i: u16| cso.shape_1.face_vertex(f1, i.into());
-        let corner_2 = |i: u16| cso.shape_2.face_vertex(f2, i.into());
-        let features = match vertex.tag {
-            Tag::Corner(i) => [Feature::Face(f1), Feature::Vertex(corner_2(i))],
-            Tag::Window(i) => [Feature::Vertex(corner_1(i)), Feature::Face(f2)],
-            Tag::Crossing(i, j) => [
-                edge_of(cso.shape_1, f1, i.into()),
-                edge_of(cso.shape_2, f2, j.into()),
-            ],
-        };
-        let foot = self.origin + self.axes[0] * vertex.at.x + self.axes[1] * vertex.at.y;
-        let [h1, h2] = self.heights(vertex.at);
-        ContactPoint {
-            on_1: foot + self.normal * h1,
-            on_2: foot + self.normal * h2,
-            distance: vertex.distance,
-            features,
-        }
-    }
-}
-
-/// The plane of a face of shape 2, in frame 1: its outward normal, and its height over `origin`. A
-/// segment has that of its planes which leans least against the contact normal; a point has none.
-fn plane_2<A: Polytope, B: Polytope>(
-    cso: &Cso<'_, A, B>,
-    face: FaceId,
-    normal: DVec3,
-    origin: DVec3,
-) -> Option<(DVec3, f64)> {
-    let shape = cso.shape_2;
-    match shape.face_len(face) {
-        1 => None,
-        2 => {
-            let corner = |i| {
-                cso.pose
-                    .point_to_1(shape.vertex(shape.face_vertex(face, i)))
+    /// Whichever polygon is the window: one inside of the other, and both overhanging.
+    #[test]
+    fn contacts_lie_on_the_features_they_name() {
+        for (sides, radii) in [
+            ([4, 9], [1.0, 1.0]),
+            ([9, 4], [1.0, 1.0]),
+            ([9, 4], [1.0, 0.3]),
+        ] {
+            let shapes = [prism(sides[0], radii[0]), prism(sides[1], radii[1])];
+            let turn = Rotation::from_scaled_axis(Vec3::new(1e-3, 0.4, 2e-3));
+            let pose = Pose::from_parts(Vec3::new(0.3, 0.99, 0.1), turn);
+            let pose = RelativePose::from_valid(&pose);
+            let cso = Cso {
+                shape_1: &shapes[0],
+                shape_2: &shapes[1],
+                pose: &pose,
             };
-            let along = (corner(1) - corner(0)).try_normalize()?;
-            let outward = (along * along.dot(normal) - normal).try_normalize()?;
-            Some((outward, outward.dot(corner(0) - origin)))
+            let answer = Query {
+                cso: &cso,
+                max_distance: 0.1,
+                scratch: &mut EpaScratch::default(),
+                cost: &mut Cost::default(),
+            }
+            .run(&Memory::None);
+            let Some((Answer::Near(near), _)) = answer else {
+                panic!("no contact: {answer:?}");
+            };
+            let found = contacts(&cso, &near, 0.1, &mut ClipScratch::default());
+            assert_eq!(found.as_slice().len(), MAX_POINTS);
+            for contact in found.as_slice() {
+                let on_2 = pose.point_to_2(contact.on_2);
+                let off = distance_to(&shapes[0], contact.features[0], contact.on_1)
+                    .max(distance_to(&shapes[1], contact.features[1], on_2));
+                // A point between tilted faces leaves its vertex or edge by depth times tilt.
+                assert!(off < 1e-4, "{sides:?}: {contact:?} is {off} off");
+            }
         }
-        _ => {
-            let outward = shape.face_normal(face);
-            let height = shape.face_offset(face) - outward.dot(cso.pose.point_to_2(origin));
-            Some((cso.pose.direction_to_1(outward), height))
-        }
-    }
-}
-
-/// The face that is in contact: the feature itself, or that next to it which faces the other
-/// shape most.
-fn facing(shape: &impl Polytope, feature: Feature, outward: DVec3) -> FaceId {
-    match feature {
-        Feature::Face(face) => face,
-        Feature::Vertex(vertex) => shape.face_at(vertex, outward),
-        Feature::Edge(edge) => match shape.edge(edge) {
-            Some(ends) => shape.face_beside(ends, outward),
-            None => shape.face_at(0, outward),
-        },
-    }
-}
-
-/// The `i`-th edge of a face.
-fn edge_of(shape: &impl Polytope, face: FaceId, i: usize) -> Feature {
-    match shape.face_edge(face, i) {
-        Some(edge) => Feature::Edge(edge),
-        None => Feature::Vertex(shape.face_vertex(face, i)),
     }
 }

@@ -4,12 +4,12 @@ use oorandom::Rand32;
 use rapier3d::prelude::*;
 
 use super::world::World;
-use super::{Scene, SceneParams, containers, hulls};
+use super::{Scene, SceneParams, containers, hulls, standing};
 
 /// Distance between the centres of neighbours at the start, in bounding diameters.
 const SPACING: Real = 1.1;
 /// Below and between the parts of a tower, so that it does not start in exact touch.
-const GAP: Real = 0.001;
+pub(super) const GAP: Real = 0.001;
 const TOWER: usize = 8;
 const COIN_TOWER: usize = 16;
 const COIN_HALF_HEIGHT: Real = 0.03;
@@ -41,13 +41,18 @@ pub fn fill(
         colliders,
         random,
         bodies: params.bodies as usize,
-        can_sleep: scene == Scene::Asleep,
+        can_sleep: params.can_sleep,
     };
     match scene {
         Scene::Drum => filler.drum(),
         Scene::Stack => filler.towers(TOWER),
         Scene::Coins => filler.towers(COIN_TOWER),
         Scene::Asleep => filler.resting(),
+        Scene::Wall => filler.wall(),
+        Scene::Dominoes => filler.dominoes(),
+        Scene::Spin => filler.spinning()?,
+        Scene::Top => filler.tops(),
+        Scene::Rolling => filler.rolling(),
         Scene::Trimesh => filler.trimesh()?,
         Scene::Pile | Scene::Cuboids | Scene::Balls | Scene::Mixed | Scene::Compound => {
             filler.pile();
@@ -89,15 +94,21 @@ fn shapes(
             let hulls = hulls::make(&params.hulls, count, random)?;
             (0..hulls.len()).map(|i| pair_of_hulls(&hulls, i)).collect()
         }
-        Scene::Coins => {
+        Scene::Wall => vec![hulls::cuboid(standing::BRICK)?],
+        Scene::Dominoes => vec![hulls::cuboid(standing::DOMINO)?],
+        Scene::Coins | Scene::Top => {
             let super::HullSource::Prism { sides } = params.hulls else {
                 return Err("coins are prisms".to_owned());
             };
             vec![hulls::prism(sides, COIN_HALF_HEIGHT)?]
         }
-        Scene::Drum | Scene::Pile | Scene::Stack | Scene::Asleep | Scene::Trimesh => {
-            hulls::make(&params.hulls, count, random)?
-        }
+        Scene::Drum
+        | Scene::Pile
+        | Scene::Stack
+        | Scene::Spin
+        | Scene::Rolling
+        | Scene::Asleep
+        | Scene::Trimesh => hulls::make(&params.hulls, count, random)?,
     })
 }
 
@@ -117,16 +128,17 @@ fn reach(shape: &SharedShape) -> Real {
     sphere.center.length() + sphere.radius
 }
 
-struct Filler<'a> {
-    world: &'a mut World,
+/// Fills a world with one scene.
+pub(super) struct Filler<'a> {
+    pub world: &'a mut World,
     /// What the bodies are placed by.
     shapes: Vec<SharedShape>,
     /// The same shapes as they come into the world.
     colliders: Vec<SharedShape>,
     /// The largest reach of a shape.
-    reach: Real,
+    pub reach: Real,
     random: Rand32,
-    bodies: usize,
+    pub bodies: usize,
     /// A pile that falls asleep costs nothing, and its figures would say so of both worlds.
     can_sleep: bool,
 }
@@ -231,40 +243,41 @@ impl Filler<'_> {
             let (x, z) = square_cell(i * side, side, spacing);
             let away = Vector::new(x - 3.0 * spacing, 4.0 * self.reach, z);
             let pose = self.tumbled(away);
-            let collider = self.insert(i, pose);
+            let (_, collider) = self.insert(i, pose);
             let collider = &mut self.world.physics.colliders[collider];
             collider.set_restitution(1.0);
             collider.set_restitution_combine_rule(CoefficientCombineRule::Max);
         }
     }
 
-    fn shape(&self, i: usize) -> &SharedShape {
+    pub fn shape(&self, i: usize) -> &SharedShape {
         &self.shapes[i % self.shapes.len()]
     }
 
-    fn insert(&mut self, i: usize, pose: Pose) -> ColliderHandle {
+    /// Body `i`, and its collider.
+    pub fn insert(&mut self, i: usize, pose: Pose) -> (RigidBodyHandle, ColliderHandle) {
         let body = RigidBodyBuilder::dynamic()
             .pose(pose)
             .can_sleep(self.can_sleep);
         let shape = self.colliders[i % self.colliders.len()].clone();
         let collider = ColliderBuilder::new(shape);
-        self.world.physics.insert(body, collider).1
+        self.world.physics.insert(body, collider)
     }
 
     /// A random number between `-limit` and `limit`.
-    fn within(&mut self, limit: Real) -> Real {
+    pub fn within(&mut self, limit: Real) -> Real {
         limit * (2.0 * self.random.rand_float() - 1.0)
     }
 
     /// A pose at `place`, turned at random.
-    fn tumbled(&mut self, place: Vector) -> Pose {
+    pub fn tumbled(&mut self, place: Vector) -> Pose {
         let axis_angle = Vector::new(self.within(2.0), self.within(2.0), self.within(2.0));
         Pose::new(place, axis_angle)
     }
 }
 
 /// Cell `i` of a square of `side` times `side` cells around the origin.
-fn square_cell(i: usize, side: usize, spacing: Real) -> (Real, Real) {
+pub(super) fn square_cell(i: usize, side: usize, spacing: Real) -> (Real, Real) {
     let along = |step: usize| (step as Real - (side - 1) as Real / 2.0) * spacing;
     (along(i % side), along(i / side))
 }

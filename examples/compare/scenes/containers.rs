@@ -4,6 +4,7 @@ use std::f32::consts::PI;
 
 use rapier3d::prelude::*;
 
+use super::hulls;
 use super::world::World;
 
 /// Thick enough that nothing tunnels through it in a frame.
@@ -44,6 +45,14 @@ pub fn floor(world: &mut World, half_width: Real) {
     let slab = ColliderBuilder::cuboid(half_width, WALL / 2.0, half_width)
         .translation(Vector::new(0.0, -WALL / 2.0, 0.0));
     world.physics.insert_collider(slab, None);
+}
+
+/// The same floor as a hull.
+pub fn hull_floor(world: &mut World, half_width: Real) -> Result<(), String> {
+    let slab = hulls::cuboid(Vector::new(half_width, WALL / 2.0, half_width))?;
+    let slab = ColliderBuilder::new(slab).translation(Vector::new(0.0, -WALL / 2.0, 0.0));
+    world.physics.insert_collider(slab, None);
+    Ok(())
 }
 
 /// Four walls around a square.

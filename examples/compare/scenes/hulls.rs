@@ -38,6 +38,12 @@ pub fn make(
                 prism(*sides, half_height)
             })
             .collect(),
+        HullSource::Box => (0..distinct)
+            .map(|_| {
+                let mut size = || RADIUS * (0.3 + 0.4 * random.rand_float());
+                cuboid(Vector::new(size(), size(), size()))
+            })
+            .collect(),
         HullSource::Real => real(distinct),
         HullSource::File(path) => {
             let hull = hull(&normalised(obj_points(path)?), &path.display().to_string())?;
@@ -67,6 +73,11 @@ pub fn prism(sides: u32, half_height: Real) -> Result<SharedShape, String> {
         })
         .collect();
     hull(&points, &format!("a prism of {sides} sides"))
+}
+
+/// A cuboid of these half extents as a hull.
+pub fn cuboid(half: Vector) -> Result<SharedShape, String> {
+    hull(&Cuboid::new(half).to_trimesh().0, "the corners of a cuboid")
 }
 
 /// The hull of `points`, if it is a solid: rapier gives flat ones no mass.

@@ -3,6 +3,7 @@
 mod build;
 mod containers;
 pub mod hulls;
+mod standing;
 mod world;
 
 use std::fmt;
@@ -24,6 +25,16 @@ pub enum Scene {
     Stack,
     /// Towers of thin coins, sixteen high.
     Coins,
+    /// A brick wall.
+    Wall,
+    /// A row of dominoes, of which the first falls.
+    Dominoes,
+    /// Prisms turning slowly about their axes on a hull.
+    Spin,
+    /// Coins spun on their rims.
+    Top,
+    /// Hulls rolling over a floor.
+    Rolling,
     /// A large floor of resting hulls, nearly all asleep, and a few that bounce.
     Asleep,
     /// A pile of cuboids: no hull at all.
@@ -40,11 +51,16 @@ pub enum Scene {
 
 impl Scene {
     /// Every scene.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 15] = [
         Self::Drum,
         Self::Pile,
         Self::Stack,
         Self::Coins,
+        Self::Wall,
+        Self::Dominoes,
+        Self::Spin,
+        Self::Top,
+        Self::Rolling,
         Self::Asleep,
         Self::Cuboids,
         Self::Balls,
@@ -60,6 +76,11 @@ impl Scene {
             Self::Pile => "pile",
             Self::Stack => "stack",
             Self::Coins => "coins",
+            Self::Wall => "wall",
+            Self::Dominoes => "dominoes",
+            Self::Spin => "spin",
+            Self::Top => "top",
+            Self::Rolling => "rolling",
             Self::Asleep => "asleep",
             Self::Cuboids => "cuboids",
             Self::Balls => "balls",
@@ -74,7 +95,9 @@ impl Scene {
         match self {
             Self::Drum | Self::Mixed => 512,
             Self::Pile => 400,
-            Self::Stack => 128,
+            Self::Spin | Self::Top => 16,
+            Self::Dominoes | Self::Rolling => 64,
+            Self::Stack | Self::Wall => 128,
             Self::Coins | Self::Compound | Self::Trimesh => 256,
             Self::Asleep | Self::Cuboids | Self::Balls => 1000,
         }
@@ -84,14 +107,21 @@ impl Scene {
     pub const fn hulls(self) -> Hulls {
         match self {
             Self::Cuboids | Self::Balls => Hulls::None,
-            Self::Stack | Self::Coins => Hulls::Prisms,
+            Self::Stack | Self::Coins | Self::Spin | Self::Top => Hulls::Prisms,
+            Self::Wall | Self::Dominoes => Hulls::Boxes,
             Self::Drum
             | Self::Pile
+            | Self::Rolling
             | Self::Asleep
             | Self::Mixed
             | Self::Compound
             | Self::Trimesh => Hulls::Any,
         }
+    }
+
+    /// Whether its bodies are to stay upright.
+    pub const fn stands(self) -> bool {
+        matches!(self, Self::Stack | Self::Coins | Self::Wall | Self::Spin)
     }
 }
 
@@ -117,8 +147,10 @@ impl FromStr for Scene {
 pub enum Hulls {
     /// It has none.
     None,
-    /// Towers stand on prisms only.
+    /// Prisms only.
     Prisms,
+    /// Boxes of its own.
+    Boxes,
     /// From any source.
     Any,
 }
@@ -136,6 +168,8 @@ pub enum HullSource {
         /// Sides of the polygon.
         sides: u32,
     },
+    /// Boxes of eight vertices.
+    Box,
     /// Hulls of objects that robots handle, from the test data of this crate.
     Real,
     /// The hull of the vertices of one Wavefront file.
@@ -147,6 +181,7 @@ impl fmt::Display for HullSource {
         match self {
             Self::Random { vertices } => write!(f, "random hulls of {vertices} vertices"),
             Self::Prism { sides } => write!(f, "prisms of {sides} sides"),
+            Self::Box => f.write_str("boxes as hulls"),
             Self::Real => f.write_str("hulls of real objects"),
             Self::File(path) => write!(f, "hull of {}", path.display()),
         }
@@ -168,6 +203,9 @@ pub struct SceneParams {
     pub recycling: bool,
     /// Whether worlds with our dispatcher hold [`isa_gjk::HullShape`]s instead of plain hulls.
     pub hull_shape: bool,
+    /// Whether bodies may fall asleep. Those that do cost nothing, and figures of time would say
+    /// so of both worlds.
+    pub can_sleep: bool,
 }
 
 /// Builds `scene`; without a dispatcher, rapier's own narrow phase answers.

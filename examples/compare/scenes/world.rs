@@ -89,7 +89,8 @@ impl World {
         hash
     }
 
-    fn dynamic_bodies(&self) -> impl Iterator<Item = &RigidBody> {
+    /// The bodies that move freely, in the order in which they were inserted.
+    pub fn dynamic_bodies(&self) -> impl Iterator<Item = &RigidBody> {
         let bodies = self.physics.bodies.iter().map(|(_, body)| body);
         bodies.filter(|body| body.is_dynamic())
     }

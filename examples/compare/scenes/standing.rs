@@ -1,0 +1,106 @@
+//! Scenes that show how contacts hold: what stands, falls in a row, spins and rolls.
+
+use std::f32::consts::PI;
+
+use rapier3d::prelude::*;
+
+use super::build::{Filler, GAP, square_cell};
+use super::containers;
+
+/// Half extents of a brick, in metres.
+pub(super) const BRICK: Vector = Vector::new(0.4, 0.15, 0.2);
+/// Half extents of a domino, in metres.
+pub(super) const DOMINO: Vector = Vector::new(0.05, 0.5, 0.25);
+/// Radians per second at which prisms turn about their axes.
+const SLOW: Real = 0.5;
+/// Radians per second about the axis of a coin on its rim, which leans by [`LEAN`] radians.
+const FAST: Real = 12.0;
+const LEAN: Real = 0.6;
+/// Radians per second of the first domino.
+const PUSH: Vector = Vector::new(0.0, 0.0, -2.0);
+/// Metres per second at which hulls roll.
+const ROLL: Real = 2.0;
+
+impl Filler<'_> {
+    /// Layers of bricks, each a brick shorter than that beneath it and shifted by half a brick.
+    pub(super) fn wall(&mut self) {
+        let width = 2.0 * BRICK.x + GAP;
+        let mut in_layer = (1..).find(|n| n * (n + 1) / 2 >= self.bodies).unwrap_or(1);
+        containers::floor(self.world, width * in_layer as Real);
+        let (mut place, mut y) = (0, BRICK.y + GAP);
+        for i in 0..self.bodies {
+            if place == in_layer {
+                (in_layer, place, y) = (in_layer - 1, 0, y + 2.0 * BRICK.y + GAP);
+            }
+            let x = (place as Real - 0.5 * (in_layer - 1) as Real) * width;
+            self.insert(i, Pose::translation(x, y, 0.0));
+            place += 1;
+        }
+    }
+
+    /// A row, of which the first is pushed.
+    pub(super) fn dominoes(&mut self) {
+        let spacing = DOMINO.y;
+        let row = spacing * self.bodies as Real;
+        containers::floor(self.world, row / 2.0 + 2.0 * DOMINO.y);
+        for i in 0..self.bodies {
+            let x = spacing * i as Real - row / 2.0;
+            let (body, _) = self.insert(i, Pose::translation(x, DOMINO.y + GAP, 0.0));
+            if i == 0 {
+                self.world.physics.bodies[body].set_angvel(PUSH, true);
+            }
+        }
+    }
+
+    /// Prisms that turn about their axes without friction.
+    pub(super) fn spinning(&mut self) -> Result<(), String> {
+        let side = (self.bodies as Real).sqrt().ceil() as usize;
+        let spacing = 3.0 * self.reach;
+        containers::hull_floor(self.world, spacing * side as Real)?;
+        for i in 0..self.bodies {
+            let half_height = self.shape(i).compute_local_aabb().half_extents().y;
+            let (x, z) = square_cell(i, side, spacing);
+            let turn = Rotation::from_rotation_y(self.within(PI));
+            let (body, collider) = self.insert(
+                i,
+                Pose::from_parts(Vector::new(x, half_height + GAP, z), turn),
+            );
+            let collider = &mut self.world.physics.colliders[collider];
+            collider.set_friction(0.0);
+            collider.set_friction_combine_rule(CoefficientCombineRule::Min);
+            self.world.physics.bodies[body].set_angvel(Vector::Y * SLOW, true);
+        }
+        Ok(())
+    }
+
+    /// Coins that lean on their rims and turn about the vertical, as a spun coin does before it
+    /// lies down.
+    pub(super) fn tops(&mut self) {
+        let side = (self.bodies as Real).sqrt().ceil() as usize;
+        let spacing = 8.0 * self.reach;
+        containers::floor(self.world, spacing * side as Real);
+        for i in 0..self.bodies {
+            let half = self.shape(i).compute_local_aabb().half_extents();
+            let (x, z) = square_cell(i, side, spacing);
+            let lean = Rotation::from_rotation_y(self.within(PI)) * Rotation::from_rotation_x(LEAN);
+            let height = half.x * LEAN.sin() + half.y * LEAN.cos() + GAP;
+            let (body, _) = self.insert(i, Pose::from_parts(Vector::new(x, height, z), lean));
+            self.world.physics.bodies[body].set_angvel(Vector::Y * FAST, true);
+        }
+    }
+
+    /// Hulls that roll along lanes of their own.
+    pub(super) fn rolling(&mut self) {
+        let spacing = 2.5 * self.reach;
+        let half_width = 0.5 * spacing * self.bodies as Real + 20.0;
+        containers::floor(self.world, half_width);
+        for i in 0..self.bodies {
+            let z = spacing * (i as Real - 0.5 * self.bodies as Real);
+            let pose = self.tumbled(Vector::new(0.0, 1.1 * self.reach, z));
+            let (body, _) = self.insert(i, pose);
+            let body = &mut self.world.physics.bodies[body];
+            body.set_linvel(Vector::X * ROLL, true);
+            body.set_angvel(Vector::Z * (-ROLL / self.reach), true);
+        }
+    }
+}

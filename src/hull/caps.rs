@@ -1,0 +1,198 @@
+//! Caps: faces that lie nearly in one plane with their neighbours, as those of a scanned or
+//! triangulated flat end do. Bodies rest on caps, not on single facets of them.
+
+use glam::{DVec2, DVec3};
+
+use super::faces::Faces;
+use super::graph::EdgeGraph;
+use crate::support::FaceId;
+use crate::tolerance::CAP_ANGLE_COS;
+
+/// For each face that belongs to a cap, the cap; for each cap, the faces under its outline in a
+/// row.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Caps {
+    /// Empty if there are no caps.
+    of_face: Box<[u16]>,
+    first: Box<[u32]>,
+    faces: Box<[u16]>,
+}
+
+/// A cap has no more members than these, so that one contact is never the work of thousands of
+/// faces. What is left of a larger flat region becomes a cap beside it.
+const MAX_MEMBERS: usize = 64;
+
+/// The face is a cap of its own.
+const ALONE: u16 = u16::MAX;
+
+/// One cap.
+pub(super) struct Cap {
+    members: Vec<u16>,
+    /// Faces that are no members, but lie partly under the outline, where that cuts across a bay.
+    bays: Vec<u16>,
+    /// The corners of the convex outline.
+    pub outline: Vec<u16>,
+}
+
+impl Caps {
+    pub fn new(caps: &[Cap], face_count: usize) -> Self {
+        if caps.is_empty() {
+            return Self::default();
+        }
+        let mut of_face = vec![ALONE; face_count];
+        let mut first = vec![0];
+        let mut faces = Vec::new();
+        for (i, cap) in caps.iter().enumerate() {
+            for &face in &cap.members {
+                of_face[face as usize] = i as u16;
+            }
+            faces.extend_from_slice(&cap.members);
+            faces.extend_from_slice(&cap.bays);
+            first.push(faces.len() as u32);
+        }
+        Self {
+            of_face: of_face.into(),
+            first: first.into(),
+            faces: faces.into(),
+        }
+    }
+
+    /// The number of the cap that `face` belongs to, and all faces under its outline.
+    #[inline]
+    pub fn around(&self, face: FaceId) -> Option<(usize, &[u16])> {
+        let cap = *self.of_face.get(face as usize)?;
+        (cap != ALONE).then(|| {
+            let cap = cap as usize;
+            let faces = self.first[cap] as usize..self.first[cap + 1] as usize;
+            (cap, &self.faces[faces])
+        })
+    }
+
+    pub fn heap_bytes(&self) -> usize {
+        size_of_val(&*self.of_face) + size_of_val(&*self.first) + size_of_val(&*self.faces)
+    }
+}
+
+/// Grows caps from the largest faces, which come first.
+pub(super) fn grow(points: &[DVec3], faces: &Faces, graph: &EdgeGraph) -> Vec<Cap> {
+    let mut taken = vec![false; faces.len()];
+    let mut caps = Vec::new();
+    for seed in 0..faces.len() {
+        let plane = Plane::of(points, faces, seed as FaceId);
+        if taken[seed] || plane.normal == DVec3::ZERO {
+            continue;
+        }
+        let mut members = vec![seed as u16];
+        taken[seed] = true;
+        let mut next = 0;
+        while let Some(&member) = members.get(next) {
+            for other in beside(faces, graph, member) {
+                let fits = members.len() < MAX_MEMBERS && !taken[other as usize];
+                if fits && plane.holds(points, faces, other) {
+                    taken[other as usize] = true;
+                    members.push(other as u16);
+                }
+            }
+            next += 1;
+        }
+        if members.len() > 1 {
+            let outline = plane.outline(points, faces, &members);
+            caps.push(Cap {
+                bays: bays(faces, graph, &members, &outline),
+                members,
+                outline,
+            });
+        }
+    }
+    caps
+}
+
+/// The faces beyond the sides of a face.
+fn beside(faces: &Faces, graph: &EdgeGraph, face: u16) -> impl Iterator<Item = FaceId> {
+    let corners = faces.polygon(face.into());
+    let ends = corners.iter().cycle().skip(1);
+    let sides = corners.iter().zip(ends);
+    sides.filter_map(|(&from, &to)| {
+        let [_, beyond] = graph.faces_beside([from.into(), to.into()])?;
+        Some(beyond)
+    })
+}
+
+/// The faces that are no members around those vertices of the members that are inside of the
+/// outline.
+fn bays(faces: &Faces, graph: &EdgeGraph, members: &[u16], outline: &[u16]) -> Vec<u16> {
+    let corners = members.iter().flat_map(|&face| faces.polygon(face.into()));
+    let inside = corners.filter(|vertex| !outline.contains(vertex));
+    let around = inside.flat_map(|&vertex| graph.faces_at(vertex.into()));
+    let mut bays: Vec<u16> = around
+        .copied()
+        .filter(|face| !members.contains(face))
+        .collect();
+    bays.sort_unstable();
+    bays.dedup();
+    bays
+}
+
+/// The plane of the face that a cap grows from.
+struct Plane {
+    normal: DVec3,
+    corner: DVec3,
+}
+
+impl Plane {
+    fn of(points: &[DVec3], faces: &Faces, face: FaceId) -> Self {
+        Self {
+            normal: faces.normal(face),
+            corner: points[faces.polygon(face)[0] as usize],
+        }
+    }
+
+    /// Whether a face, and all that is seen of it from the seed, lies within the cap's angle. A
+    /// sliver without a plane is judged by its corners alone.
+    fn holds(&self, points: &[DVec3], faces: &Faces, face: FaceId) -> bool {
+        let sine = (1.0 - CAP_ANGLE_COS * CAP_ANGLE_COS).sqrt();
+        let near = |&v: &u16| {
+            let from_corner = points[v as usize] - self.corner;
+            self.normal.dot(from_corner) >= -sine * from_corner.length()
+        };
+        let other = faces.normal(face);
+        let aligned = other == DVec3::ZERO || other.dot(self.normal) >= CAP_ANGLE_COS;
+        aligned && faces.polygon(face).iter().all(near)
+    }
+
+    /// The convex outline of faces seen against the normal, counter-clockwise (Andrew, *Another
+    /// efficient algorithm for convex hulls in two dimensions*, IPL 9(5), 1979).
+    fn outline(&self, points: &[DVec3], faces: &Faces, members: &[u16]) -> Vec<u16> {
+        let u = self.normal.any_orthonormal_vector();
+        let v = self.normal.cross(u);
+        let mut corners: Vec<(DVec2, u16)> = members
+            .iter()
+            .flat_map(|&face| faces.polygon(face.into()))
+            .map(|&vertex| {
+                let p = points[vertex as usize] - self.corner;
+                (DVec2::new(p.dot(u), p.dot(v)), vertex)
+            })
+            .collect();
+        corners
+            .sort_by(|(a, i), (b, j)| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(i.cmp(j)));
+        corners.dedup();
+        let mut outline = chain(corners.iter());
+        outline.extend(chain(corners.iter().rev()));
+        outline
+    }
+}
+
+/// Half of an outline, from the first point to before the last.
+fn chain<'a>(corners: impl Iterator<Item = &'a (DVec2, u16)>) -> Vec<u16> {
+    let mut chain: Vec<(DVec2, u16)> = Vec::new();
+    for &corner in corners {
+        while let [.., (a, _), (b, _)] = chain[..]
+            && (b - a).perp_dot(corner.0 - a) <= 0.0
+        {
+            chain.pop();
+        }
+        chain.push(corner);
+    }
+    chain.pop();
+    chain.into_iter().map(|(_, vertex)| vertex).collect()
+}

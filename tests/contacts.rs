@@ -1,0 +1,136 @@
+//! What a manifold keeps: contacts spread over the whole flat side, though it is made of many
+//! facets, at their true distances; and the solver's data when contacts change.
+
+use std::f32::consts::TAU;
+
+use isa_gjk::IsaGjkDispatcher;
+use oorandom::Rand32;
+use parry3d::math::{Pose, Real, Rotation, Vector};
+use parry3d::query::{ContactManifold, PersistentQueryDispatcher, TrackedContact};
+use parry3d::shape::{ConvexPolyhedron, SharedShape};
+
+type Manifold = ContactManifold<(), u32>;
+
+const HALF_HEIGHT: Real = 0.4;
+
+/// An upright prism of radius 1 whose corners are off their height by up to `noise`.
+fn prism(sides: u32, noise: Real) -> SharedShape {
+    let mut random = Rand32::new(7);
+    let points: Vec<Vector> = (0..sides)
+        .flat_map(|side| {
+            let (sin, cos) = (TAU * side as Real / sides as Real).sin_cos();
+            [-HALF_HEIGHT, HALF_HEIGHT].map(|y| Vector::new(cos, y, sin))
+        })
+        .map(|p| p + Vector::Y * (noise * (2.0 * random.rand_float() - 1.0)))
+        .collect();
+    SharedShape::convex_hull(&points).expect("a solid")
+}
+
+/// Brings the manifold of a large slab, whose upper side is at height zero, and of `shape` up to
+/// date.
+fn update(manifolds: &mut Vec<Manifold>, shape: &SharedShape, pose: Pose) {
+    let slab = SharedShape::cuboid(10.0, 1.0, 10.0);
+    let pos12 = Pose::translation(0.0, 1.0, 0.0) * pose;
+    let dispatcher = IsaGjkDispatcher::default();
+    dispatcher
+        .contact_manifolds(&pos12, &*slab, &**shape, 0.02, manifolds, &mut None)
+        .expect("supported");
+}
+
+fn standing(tilt: Vector) -> Pose {
+    let place = Vector::new(0.3, HALF_HEIGHT + 1e-3, -0.2);
+    Pose::from_parts(place, Rotation::from_scaled_axis(tilt))
+}
+
+/// The area that four points span, seen from above: half the product of the diagonals.
+fn area(points: &[TrackedContact<u32>]) -> Real {
+    let at = |i: usize| points[i].local_p2;
+    let product = |a: usize, b: usize, c: usize, d: usize| {
+        let cross = (at(b) - at(a)).cross(at(d) - at(c));
+        0.5 * cross.y.abs()
+    };
+    product(0, 1, 2, 3)
+        .max(product(0, 2, 1, 3))
+        .max(product(0, 3, 1, 2))
+}
+
+/// The corners of a flat side are a tenth of a millimetre off, as scanned ones are, so that it
+/// falls into facets. It used to rest on one of them.
+#[test]
+fn a_dented_side_is_one_face_with_its_true_distances() {
+    for sides in [8, 16, 48] {
+        let shape = prism(sides, 1e-4);
+        let hull: &ConvexPolyhedron = shape.as_convex_polyhedron().expect("a hull");
+        let mut manifolds = Vec::new();
+        let pose = standing(Vector::new(2e-4, 0.5, -1e-4));
+        update(&mut manifolds, &shape, pose);
+        let points = &manifolds[0].points;
+        assert_eq!(points.len(), 4, "{sides} sides");
+        // A square in the unit circle has area 2.
+        assert!(area(points) > 1.6, "{sides} sides: {}", area(points));
+        let lowest = hull.points().iter().map(|p| (pose * *p).y);
+        let deepest = lowest.fold(Real::INFINITY, Real::min);
+        assert!((points[0].dist - deepest).abs() < 2e-6, "{sides} sides");
+        for point in points {
+            let height = (pose * point.local_p2).y;
+            assert!((point.dist - height).abs() < 2e-6, "{sides} sides");
+            let nearest = hull.points().iter().map(|p| p.distance(point.local_p2));
+            let away = nearest.fold(Real::INFINITY, Real::min);
+            assert!(away < 2e-5, "{sides} sides: {away} from a corner");
+        }
+    }
+}
+
+/// A coin that begins to lean the other way has other deepest corners. Its weight must not be
+/// borne by fewer contacts for that.
+#[test]
+fn no_impulse_is_lost_when_contacts_change() {
+    let shape = prism(64, 0.0);
+    let mut manifolds = Vec::new();
+    update(
+        &mut manifolds,
+        &shape,
+        standing(Vector::new(1e-3, 0.0, 0.0)),
+    );
+    for (i, point) in manifolds[0].points.iter_mut().enumerate() {
+        point.data = i as u32 + 1;
+    }
+    let before = manifolds[0].points.clone();
+    update(
+        &mut manifolds,
+        &shape,
+        standing(Vector::new(1e-3, 0.0, 6e-4)),
+    );
+    let after = &manifolds[0].points;
+    let changed = after.iter().all(|new| {
+        let same = |old: &TrackedContact<u32>| (old.fid1, old.fid2) == (new.fid1, new.fid2);
+        !before.iter().any(same)
+    });
+    assert!(changed, "the coin leans on the same corners");
+    let mut data: Vec<u32> = after.iter().map(|point| point.data).collect();
+    data.sort_unstable();
+    assert_eq!(data, [1, 2, 3, 4]);
+}
+
+/// A box that slides on keeps the data of each corner with that corner.
+#[test]
+fn impulses_stay_with_their_corners() {
+    let corners = [-1.0, 1.0]
+        .map(|x| [-1.0, 1.0].map(|z| [-HALF_HEIGHT, HALF_HEIGHT].map(|y| Vector::new(x, y, z))));
+    let shape = SharedShape::convex_hull(corners.as_flattened().as_flattened()).expect("a solid");
+    let mut manifolds = Vec::new();
+    update(&mut manifolds, &shape, standing(Vector::new(0.0, 0.3, 0.0)));
+    let corner = |p: Vector| u32::from(p.x > 0.0) * 2 + u32::from(p.z > 0.0) + 1;
+    for point in &mut manifolds[0].points {
+        point.data = corner(point.local_p2);
+    }
+    update(
+        &mut manifolds,
+        &shape,
+        Pose::translation(0.05, 0.0, 0.02) * standing(Vector::new(0.0, 0.35, 1e-4)),
+    );
+    assert_eq!(manifolds[0].points.len(), 4);
+    for point in &manifolds[0].points {
+        assert_eq!(point.data, corner(point.local_p2));
+    }
+}
