@@ -13,11 +13,11 @@ pub const FACE_FLATNESS: f64 = 6e-7;
 /// (cosine), so that slivers of arbitrary direction cannot chain a face around a corner.
 pub const FACE_ANGLE_COS: f64 = 0.999_847_7;
 
-/// Faces within 2 degrees (cosine) of a larger one around which they lie are a cap with it:
+/// Faces within 1 degree (cosine) of a larger one around which they lie are a cap with it:
 /// contacts are sought on all of them together. Distances are measured to the faces themselves, so
 /// that the angle decides only how many corners are looked at; f32 rounding and scanning noise
 /// stay below it, and the facets of round hulls of a thousand vertices above.
-pub const CAP_ANGLE_COS: f64 = 0.999_390_8;
+pub const CAP_ANGLE_COS: f64 = 0.999_847_7;
 
 /// A triangle lower than this share of the radius is a sliver: rounding of its corners can turn
 /// its plane by several degrees.

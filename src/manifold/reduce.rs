@@ -13,7 +13,9 @@ pub(super) fn split(
     let mut near = 0;
     for i in 0..corners.len() {
         if corners[i].distance <= max_distance {
-            corners.swap(near, i);
+            if near < i {
+                corners.swap(near, i);
+            }
             near += 1;
         }
     }
