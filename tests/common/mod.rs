@@ -8,4 +8,5 @@ pub mod memory;
 pub mod oracle;
 pub mod pose;
 pub mod report;
+pub mod world;
 pub mod zoo;
