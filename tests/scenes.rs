@@ -116,7 +116,7 @@ fn settled(scene: Scene) -> Option<Settled> {
         Scene::Coins => (0.25, 0.41),
         Scene::Asleep => (0.05, 0.35),
         // A layer or two, in the hollows of the ground.
-        Scene::Trimesh => (0.1, -0.1),
+        Scene::Trimesh | Scene::Heightfield => (0.1, -0.1),
         _ => (0.1, 0.25),
     };
     Some(Settled { overlap, height })

@@ -13,8 +13,8 @@ use crate::scenes::{HullSource, Hulls, Scene, SceneParams};
 #[derive(Parser)]
 #[command(name = "compare")]
 pub struct Options {
-    /// What is in the world: drum, pile, stack, coins, asleep, cuboids, balls, mixed, compound
-    /// or trimesh
+    /// What is in the world: drum, pile, stack, coins, asleep, cuboids, balls, mixed, compound,
+    /// trimesh or heightfield
     #[arg(long, default_value_t = Scene::Drum)]
     pub scene: Scene,
 

@@ -28,6 +28,8 @@ where
     C: Default + Copy + Send + Sync,
 {
     use ShapeType::{Ball, HeightField, TriMesh, Voxels};
+    // Parry's routines assert that boxes are not loosened by less than nothing.
+    let prediction = prediction.max(0.0);
     let [s1, s2] = shapes;
     let composites = [s1.as_composite_shape(), s2.as_composite_shape()];
     if let [Some(c1), Some(c2)] = composites {

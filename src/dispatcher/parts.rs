@@ -1,5 +1,6 @@
 //! Scene queries against shapes with parts: parry's routines pick the parts, and ask *us* about
 //! them. The order of cases is that of parry's own dispatcher; `None` where it has no such case.
+//! Negative distances become zero: the routines assert that they are not.
 
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{
@@ -65,6 +66,7 @@ pub(super) fn contact(
     g2: &dyn Shape,
     prediction: Real,
 ) -> Option<Option<Contact>> {
+    let prediction = prediction.max(0.0);
     Some(if let Some(h1) = g1.as_heightfield() {
         contact_heightfield_shape(us, pos12, h1, g2, prediction)
     } else if let Some(h2) = g2.as_heightfield() {
@@ -98,8 +100,9 @@ pub(super) fn cast_shapes(
     velocity: Vector,
     g1: &dyn Shape,
     g2: &dyn Shape,
-    options: ShapeCastOptions,
+    mut options: ShapeCastOptions,
 ) -> Option<Result<Option<ShapeCastHit>, Unsupported>> {
+    options.target_distance = options.target_distance.max(0.0);
     if let Some(h1) = g1.as_heightfield() {
         return Some(cast_shapes_heightfield_shape(
             us, pos12, velocity, h1, g2, options,

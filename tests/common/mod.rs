@@ -2,6 +2,7 @@
 // Every test binary compiles this module whole and uses its own part of it.
 #![allow(dead_code)]
 
+pub mod bytes;
 pub mod cases;
 pub mod generate;
 pub mod memory;

@@ -48,7 +48,7 @@ pub fn fill(
         Scene::Stack => filler.towers(TOWER),
         Scene::Coins => filler.towers(COIN_TOWER),
         Scene::Asleep => filler.resting(),
-        Scene::Trimesh => filler.trimesh()?,
+        Scene::Trimesh | Scene::Heightfield => filler.bumpy(scene)?,
         Scene::Pile | Scene::Cuboids | Scene::Balls | Scene::Mixed | Scene::Compound => {
             filler.pile();
         }
@@ -95,9 +95,12 @@ fn shapes(
             };
             vec![hulls::prism(sides, COIN_HALF_HEIGHT)?]
         }
-        Scene::Drum | Scene::Pile | Scene::Stack | Scene::Asleep | Scene::Trimesh => {
-            hulls::make(&params.hulls, count, random)?
-        }
+        Scene::Drum
+        | Scene::Pile
+        | Scene::Stack
+        | Scene::Asleep
+        | Scene::Trimesh
+        | Scene::Heightfield => hulls::make(&params.hulls, count, random)?,
     })
 }
 
@@ -159,11 +162,16 @@ impl Filler<'_> {
         self.drop_in(side, half_width, 0.0);
     }
 
-    fn trimesh(&mut self) -> Result<(), String> {
+    /// On a bumpy mesh or height field.
+    fn bumpy(&mut self, scene: Scene) -> Result<(), String> {
         let (side, half_width) = self.column();
         let (side, half_width) = (2 * side, 2.0 * half_width);
         let cell = 1.5 * self.reach;
-        containers::bumpy_ground(self.world, half_width + 1.0, cell)?;
+        if scene == Scene::Trimesh {
+            containers::bumpy_mesh(self.world, half_width + 1.0, cell)?;
+        } else {
+            containers::bumpy_field(self.world, half_width + 1.0, cell);
+        }
         self.drop_in(side, half_width, cell);
         Ok(())
     }

@@ -36,11 +36,13 @@ pub enum Scene {
     Compound,
     /// Hulls dropped on a bumpy triangle mesh.
     Trimesh,
+    /// Hulls dropped on a bumpy height field.
+    Heightfield,
 }
 
 impl Scene {
     /// Every scene.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Drum,
         Self::Pile,
         Self::Stack,
@@ -51,6 +53,7 @@ impl Scene {
         Self::Mixed,
         Self::Compound,
         Self::Trimesh,
+        Self::Heightfield,
     ];
 
     /// The name on the command line and in tables.
@@ -66,6 +69,7 @@ impl Scene {
             Self::Mixed => "mixed",
             Self::Compound => "compound",
             Self::Trimesh => "trimesh",
+            Self::Heightfield => "heightfield",
         }
     }
 
@@ -75,7 +79,7 @@ impl Scene {
             Self::Drum | Self::Mixed => 512,
             Self::Pile => 400,
             Self::Stack => 128,
-            Self::Coins | Self::Compound | Self::Trimesh => 256,
+            Self::Coins | Self::Compound | Self::Trimesh | Self::Heightfield => 256,
             Self::Asleep | Self::Cuboids | Self::Balls => 1000,
         }
     }
@@ -90,7 +94,8 @@ impl Scene {
             | Self::Asleep
             | Self::Mixed
             | Self::Compound
-            | Self::Trimesh => Hulls::Any,
+            | Self::Trimesh
+            | Self::Heightfield => Hulls::Any,
         }
     }
 }
