@@ -14,6 +14,8 @@ use parry3d::query::details::{
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Shape, ShapeType};
 
+use super::{compound, pair};
+
 /// Updates the manifolds of a pair in which a shape has parts. `false` if none has.
 pub(super) fn contact_manifolds<M, C>(
     dispatcher: &dyn PersistentQueryDispatcher<M, C>,
@@ -31,6 +33,9 @@ where
     // Parry's routines assert that boxes are not loosened by less than nothing.
     let prediction = prediction.max(0.0);
     let [s1, s2] = shapes;
+    if compound_with_hull(dispatcher, pos12, shapes, prediction, manifolds, workspace) {
+        return true;
+    }
     let composites = [s1.as_composite_shape(), s2.as_composite_shape()];
     if let [Some(c1), Some(c2)] = composites {
         contact_manifolds_composite_shape_composite_shape(
@@ -77,6 +82,42 @@ where
         },
     }
     true
+}
+
+/// A compound with a hull against another compound or a convex shape. `false` for other pairs.
+fn compound_with_hull<M, C>(
+    dispatcher: &dyn PersistentQueryDispatcher<M, C>,
+    pos12: &Pose,
+    [s1, s2]: [&dyn Shape; 2],
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) -> bool
+where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    let (compound, other, swapped) = match [s1.as_compound(), s2.as_compound()] {
+        [Some(c1), Some(c2)] => {
+            let ours = compound::has_hull(c1) || compound::has_hull(c2);
+            if ours {
+                let pair = [c1, c2];
+                compound::compounds(dispatcher, pos12, pair, prediction, manifolds, workspace);
+            }
+            return ours;
+        }
+        [Some(c1), None] => (c1, s2, false),
+        [None, Some(c2)] => (c2, s1, true),
+        [None, None] => return false,
+    };
+    let is_hull = pair::is_hull(other, other.shape_type());
+    let ours = other.is_convex() && (is_hull || compound::has_hull(compound));
+    if ours {
+        compound::compound_and_convex(
+            dispatcher, pos12, compound, other, swapped, prediction, manifolds, workspace,
+        );
+    }
+    ours
 }
 
 /// A height field against anything; one of the shapes is one.

@@ -3,6 +3,7 @@
 mod cache;
 mod cast;
 mod composite;
+mod compound;
 mod convex;
 mod hulls;
 mod pair;

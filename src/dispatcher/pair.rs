@@ -75,7 +75,7 @@ pub(super) struct Scratch<'a> {
 }
 
 /// Whether a shape is a hull to us, so that pairs with it are ours to answer.
-fn is_hull(shape: &dyn Shape, shape_type: ShapeType) -> bool {
+pub(super) fn is_hull(shape: &dyn Shape, shape_type: ShapeType) -> bool {
     match shape_type {
         ShapeType::ConvexPolyhedron | ShapeType::RoundConvexPolyhedron => true,
         ShapeType::Custom => shape.as_shape::<HullShape>().is_some(),
