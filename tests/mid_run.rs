@@ -164,3 +164,19 @@ fn shapes_change_kind_and_size() {
     }
     assert!(touching > 30, "only {touching} contacts");
 }
+
+/// A compound becomes a single hull, and back: the contacts of its parts go with it, and rapier's
+/// solver graph (which checks itself in builds like this one) forgets them.
+#[test]
+fn parts_leave_no_contacts_behind() {
+    let mut dice = Dice::new(73);
+    let (mut world, handles) = pair_world([(); 2].map(|()| dice.hull(30, 1.0).shape));
+    for turn in 0..60 {
+        let [whole, left, right] = [(); 3].map(|()| dice.hull(20, 1.0).shape);
+        let aside = |x: Real| Pose::translation(x, 0.0, 0.0);
+        let parts = vec![(aside(-0.4), left), (aside(0.4), right)];
+        let shape = [whole, SharedShape::compound(parts)][turn % 2].clone();
+        world.colliders[handles[turn / 2 % 2]].set_shape(shape);
+        assert_present(&mut world, handles, &format!("turn {turn}"));
+    }
+}

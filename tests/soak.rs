@@ -41,10 +41,7 @@ struct Soak {
 impl Soak {
     fn new(ground: Ground, seed: u128) -> Self {
         let mut dice = Dice::new(seed);
-        let mut shapes = shapes(&mut dice);
-        if matches!(ground, Ground::Voxels) {
-            shapes.retain(|shape| shape.shape_type() != ShapeType::Ball);
-        }
+        let shapes = shapes(&mut dice);
         Self {
             world: mixed(ground, BODIES, ours()),
             shapes,

@@ -5,11 +5,12 @@
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::{
-    ContactManifoldsWorkspace, contact_manifolds_composite_shape_composite_shape,
-    contact_manifolds_composite_shape_shape, contact_manifolds_heightfield_composite_shape,
-    contact_manifolds_heightfield_shape_shapes, contact_manifolds_trimesh_shape_shapes,
-    contact_manifolds_voxels_ball_shapes, contact_manifolds_voxels_composite_shape_shapes,
-    contact_manifolds_voxels_shape_shapes, contact_manifolds_voxels_voxels_shapes,
+    ContactManifoldsWorkspace, VoxelsShapeContactManifoldsWorkspace,
+    contact_manifolds_composite_shape_composite_shape, contact_manifolds_composite_shape_shape,
+    contact_manifolds_heightfield_composite_shape, contact_manifolds_heightfield_shape_shapes,
+    contact_manifolds_trimesh_shape_shapes, contact_manifolds_voxels_ball_shapes,
+    contact_manifolds_voxels_composite_shape_shapes, contact_manifolds_voxels_shape_shapes,
+    contact_manifolds_voxels_voxels_shapes,
 };
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Shape, ShapeType};
@@ -55,6 +56,8 @@ where
         ),
         [Voxels, Ball] | [Ball, Voxels] => {
             contact_manifolds_voxels_ball_shapes(pos12, s1, s2, prediction, manifolds);
+            // Parry forgets it.
+            *workspace = Some(empty_workspace());
         }
         [Voxels, _] | [_, Voxels] if composites.iter().any(Option::is_some) => {
             contact_manifolds_voxels_composite_shape_shapes(
@@ -82,6 +85,33 @@ where
         },
     }
     true
+}
+
+/// What rapier knows a pair by whose manifolds come and go: it enters them in its solver graph
+/// anew. An empty workspace of the type that parry uses for voxels: it can be saved and loaded,
+/// and parry's routines for other pairs see that it is not theirs.
+pub(super) fn empty_workspace() -> ContactManifoldsWorkspace {
+    VoxelsShapeContactManifoldsWorkspace::<2>::new().into()
+}
+
+/// Leaves the one manifold that a pair of convex shapes has. If a shape had parts until now, the
+/// manifolds of its parts are still there, and rapier must notice that they go.
+pub(super) fn keep_one<M: Default + Clone, C: Default + Copy>(
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) {
+    let is_of_whole = |manifold: &ContactManifold<M, C>| {
+        manifold.subshape_poses.is_none() && [manifold.subshape1, manifold.subshape2] == [0, 0]
+    };
+    if let [manifold] = &manifolds[..]
+        && is_of_whole(manifold)
+    {
+        *workspace = None;
+        return;
+    }
+    *workspace = (!manifolds.is_empty()).then(empty_workspace);
+    manifolds.clear();
+    manifolds.push(ContactManifold::with_data(0, 0, M::default()));
 }
 
 /// A compound with a hull against another compound or a convex shape. `false` for other pairs.

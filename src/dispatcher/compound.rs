@@ -6,19 +6,16 @@
 //! found by the parts they name.
 //!
 //! The workspace holds nothing. Rapier wants one of pairs with many manifolds, and drops it when a
-//! shape changes. Ours is an empty one of the type that parry uses for voxels: it is saved and
-//! loaded, and parry's routine, if the pair comes back to it, sees that it is not its own and
+//! shape changes. Parry's routine, if the pair comes back to it, sees that it is not its own, and
 //! begins anew.
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
-use parry3d::query::details::{
-    ContactManifoldsWorkspace, NormalConstraints, VoxelsShapeContactManifoldsWorkspace,
-};
+use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, TypedWorkspaceData};
 use parry3d::shape::{Compound, Shape};
 
-use super::pair;
+use super::{composite, pair};
 
 /// Whether a part of the compound is a hull.
 pub(super) fn has_hull(compound: &Compound) -> bool {
@@ -162,7 +159,7 @@ where
                 if !matches!(parrys_or_none, Some(OfOne(_) | OfTwo(_))) {
                     manifolds.clear();
                 }
-                *workspace = Some(VoxelsShapeContactManifoldsWorkspace::<2>::new().into());
+                *workspace = Some(composite::empty_workspace());
             }
         }
         Self {

@@ -156,9 +156,7 @@ where
         {
             return Ok(());
         }
-        if manifolds.is_empty() {
-            manifolds.push(ContactManifold::new());
-        }
+        composite::keep_one(manifolds, workspace);
         self.contact_manifold_convex_convex(
             pos12,
             g1,

@@ -84,7 +84,7 @@ pub fn mixed(ground: Ground, count: usize, narrow_phase: NarrowPhase) -> Physics
     let mut dice = Dice::new(61);
     let mut shapes = shapes(&mut dice);
     if matches!(ground, Ground::Voxels) {
-        // With any dispatcher a ball on voxels fails an assertion in rapier's solver graph: the
+        // With rapier's own dispatcher a ball on voxels fails an assertion in the solver graph: the
         // pair has many manifolds, but no workspace by which rapier could tell.
         shapes.retain(|shape| shape.shape_type() != ShapeType::Ball);
     }
