@@ -25,7 +25,7 @@ use parry3d::shape::{Shape, SharedShape};
 const DISTANCE: f64 = 1.0e-5;
 const NORMAL: f64 = 1.0e-4;
 /// Shapes whose sizes are farther apart than that need only be survived.
-const SMALLEST: f64 = 1.0e-6;
+const SMALLEST: Real = 1.0e-6;
 /// The most poses of one pair.
 const FRAMES: usize = 12;
 /// Rounding of coordinates far from the frame's origin, relative to how far.
@@ -200,12 +200,11 @@ fn run(input: &[u8], show: bool) -> Option<String> {
         bytes.convex()?
     };
     let shapes = [&first, &second];
-    let sizes = shapes.map(size);
-    let comparable = sizes[0].min(sizes[1]) > SMALLEST * sizes[0].max(sizes[1]);
-    let exact = comparable && !with_parts && !bytes.is_tampered() && is_ours(shapes);
+    let sound = bytes.size_ratio() > SMALLEST && !bytes.is_tampered();
+    let exact = sound && !with_parts && is_ours(shapes);
     let us = IsaGjkDispatcher::default();
     let mut memory = Memory::default();
-    let size = sizes[0].max(sizes[1]);
+    let size = size(&first).max(size(&second));
     let kinds = shapes.map(|shape| shape.shape_type());
     let mut pose = Pose::IDENTITY;
     for _ in 0..FRAMES {
@@ -223,7 +222,7 @@ fn run(input: &[u8], show: bool) -> Option<String> {
             println!("{kinds:?} at {:?}, within {}", scene.pose, scene.prediction);
         }
         if with_parts {
-            check_parts(&scene, &us, &mut memory, comparable);
+            check_parts(&scene, &us, &mut memory, sound);
             continue;
         }
         let (pose, prediction) = (&scene.pose, scene.prediction);

@@ -34,6 +34,8 @@ const NONSENSE: [Real; 5] = [
 pub struct Bytes<'a> {
     rest: &'a [u8],
     tampered: bool,
+    /// The smallest and the largest size of what was made.
+    sizes: [Real; 2],
 }
 
 impl<'a> Bytes<'a> {
@@ -41,7 +43,18 @@ impl<'a> Bytes<'a> {
         Self {
             rest: bytes,
             tampered: false,
+            sizes: [Real::INFINITY, 0.0],
         }
+    }
+
+    /// The size of the smallest convex shape made so far, relative to the largest.
+    pub fn size_ratio(&self) -> Real {
+        self.sizes[0] / self.sizes[1]
+    }
+
+    fn note_size(&mut self, points: &[Vector]) {
+        let size = points.iter().map(|p| p.length()).fold(0.0, Real::max);
+        self.sizes = [self.sizes[0].min(size), self.sizes[1].max(size)];
     }
 
     /// Whether a polyhedron was made that need not be convex: there is no right answer then.
@@ -179,11 +192,13 @@ impl<'a> Bytes<'a> {
             0..=4 => self.hull()?,
             5 => {
                 let half = self.vector().abs() * self.scale();
+                self.note_size(&[half]);
                 SharedShape::cuboid(half.x, half.y, half.z)
             }
             6 => {
                 let scale = self.scale();
                 let [a, b, c] = [(); 3].map(|()| self.vector() * scale);
+                self.note_size(&[a - b, a - c]);
                 SharedShape::triangle(a, b, c)
             }
             _ => SharedShape::ball(0.1 + self.number().abs()),
