@@ -98,7 +98,7 @@ impl<'a> Bytes<'a> {
             byte @ 0..=25 => i32::from(byte) / 2 - 6,
             _ => 0,
         };
-        (10.0 as Real).powi(exponent)
+        Real::powi(10.0, exponent)
     }
 
     /// The next pose of a motion: half of the time near the last one.
@@ -140,9 +140,10 @@ impl<'a> Bytes<'a> {
             1.0,
             [1.0, 1.0, 1.0, 1.0e-2, 1.0e-5, 1.0e-7][self.below(6)],
         );
-        (0..count)
-            .map(|_| self.vector() * scale * stretch)
-            .collect()
+        let points = (0..count).map(|_| self.vector() * scale * stretch);
+        let points: Vec<Vector> = points.collect();
+        self.note_size(&points);
+        points
     }
 
     fn surface(&mut self) -> Option<(Vec<Vector>, Vec<[u32; 3]>)> {
