@@ -102,7 +102,7 @@ fn a_character_walks_among_hulls_as_among_cuboids() {
         let apart = apart.fold(0.0, Real::max);
         // Parry's casts let the model drift aside and lag behind on the ramp.
         assert!(
-            apart < 0.2,
+            apart < 0.3,
             "{apart} apart on the way along {direction}, {end} {}",
             hulls[239]
         );
