@@ -62,7 +62,7 @@
 //! | [`primitive`] | boxes, triangles and smooth shapes, as hulls meet them |
 //! | [`simplex`] | the point of a simplex nearest to the origin, in three ways |
 //! | [`gjk`] | distance and separating axis |
-//! | [`ray_cast`] | linear time of impact (the dispatcher leaves shape casts to parry) |
+//! | [`ray_cast`] | linear time of impact |
 //! | [`epa`] | penetration depth |
 //! | [`query`] | the stages of a coherent query, and the proof that features still touch |
 //! | [`manifold`] | clipping of faces, and the contacts that are kept |

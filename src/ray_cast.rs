@@ -55,8 +55,7 @@ pub fn ray_cast<S: DistanceSubalgorithm, A: Support, B: Support>(
     target_distance: f64,
     cost: &mut Cost,
 ) -> RayCast {
-    let towards_origin = (-cso.center()).normalize_or(DVec3::X);
-    let start = cso.support(towards_origin, cso.start(towards_origin), cost);
+    let start = cso.vertex_towards_origin(cost);
     let mut ray = Ray {
         velocity,
         target_distance,

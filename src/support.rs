@@ -145,6 +145,13 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
         ]
     }
 
+    /// The extreme vertex from the centre towards the origin, where the shapes are nearest if they
+    /// are round: the first vertex of a search that knows nothing.
+    pub fn vertex_towards_origin(&self, cost: &mut Cost) -> CsoVertex {
+        let dir = (-self.center()).normalize_or(DVec3::X);
+        self.support(dir, self.start(dir), cost)
+    }
+
     /// A point inside, with its origins on the two shapes.
     pub fn center(&self) -> DVec3 {
         self.shape_1.center() - self.pose.point_to_1(self.shape_2.center())

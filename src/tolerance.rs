@@ -78,3 +78,7 @@ pub const PARALLEL_EDGES: f64 = 1e-8;
 /// travelled (whose coordinates carry the rounding). The square root of f64's roundoff: a nearer
 /// nearest point, a sum of coordinates, has no direction that could move the ray on.
 pub const RAY_TOUCHING: f64 = 1e-8;
+
+/// A motion whose share against a contact normal is below this is along the contact: normals and
+/// velocities given in f32, and turned from frame to frame, are off by a few roundings.
+pub const GRAZING: f64 = 1e-6;

@@ -121,7 +121,7 @@ fn settled(scene: Scene) -> Option<Settled> {
         // Flat on the floor: half of their height of 0.06 m.
         Scene::Top => (0.1, 0.025),
         // A layer or two, in the hollows of the ground.
-        Scene::Trimesh => (0.1, -0.1),
+        Scene::Trimesh | Scene::Heightfield => (0.1, -0.1),
         _ => (0.1, 0.25),
     };
     Some(Settled { overlap, height })

@@ -14,7 +14,7 @@ use crate::scenes::{HullSource, Hulls, Scene, SceneParams};
 #[command(name = "compare")]
 pub struct Options {
     /// What is in the world: drum, pile, stack, coins, wall, dominoes, spin, top, rolling, asleep,
-    /// cuboids, balls, mixed, compound or trimesh
+    /// cuboids, balls, mixed, compound, trimesh or heightfield
     #[arg(long, default_value_t = Scene::Drum)]
     pub scene: Scene,
 

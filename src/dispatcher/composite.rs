@@ -5,14 +5,17 @@
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::{
-    ContactManifoldsWorkspace, contact_manifolds_composite_shape_composite_shape,
-    contact_manifolds_composite_shape_shape, contact_manifolds_heightfield_composite_shape,
-    contact_manifolds_heightfield_shape_shapes, contact_manifolds_trimesh_shape_shapes,
-    contact_manifolds_voxels_ball_shapes, contact_manifolds_voxels_composite_shape_shapes,
-    contact_manifolds_voxels_shape_shapes, contact_manifolds_voxels_voxels_shapes,
+    ContactManifoldsWorkspace, VoxelsShapeContactManifoldsWorkspace,
+    contact_manifolds_composite_shape_composite_shape, contact_manifolds_composite_shape_shape,
+    contact_manifolds_heightfield_composite_shape, contact_manifolds_heightfield_shape_shapes,
+    contact_manifolds_trimesh_shape_shapes, contact_manifolds_voxels_ball_shapes,
+    contact_manifolds_voxels_composite_shape_shapes, contact_manifolds_voxels_shape_shapes,
+    contact_manifolds_voxels_voxels_shapes,
 };
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Shape, ShapeType};
+
+use super::{compound, pair};
 
 /// Updates the manifolds of a pair in which a shape has parts. `false` if none has.
 pub(super) fn contact_manifolds<M, C>(
@@ -28,7 +31,12 @@ where
     C: Default + Copy + Send + Sync,
 {
     use ShapeType::{Ball, HeightField, TriMesh, Voxels};
+    // Parry's routines assert that boxes are not loosened by less than nothing.
+    let prediction = prediction.max(0.0);
     let [s1, s2] = shapes;
+    if compound_with_hull(dispatcher, pos12, shapes, prediction, manifolds, workspace) {
+        return true;
+    }
     let composites = [s1.as_composite_shape(), s2.as_composite_shape()];
     if let [Some(c1), Some(c2)] = composites {
         contact_manifolds_composite_shape_composite_shape(
@@ -48,6 +56,8 @@ where
         ),
         [Voxels, Ball] | [Ball, Voxels] => {
             contact_manifolds_voxels_ball_shapes(pos12, s1, s2, prediction, manifolds);
+            // Parry forgets it.
+            *workspace = Some(empty_workspace());
         }
         [Voxels, _] | [_, Voxels] if composites.iter().any(Option::is_some) => {
             contact_manifolds_voxels_composite_shape_shapes(
@@ -75,6 +85,69 @@ where
         },
     }
     true
+}
+
+/// What rapier knows a pair by whose manifolds come and go: it enters them in its solver graph
+/// anew. An empty workspace of the type that parry uses for voxels: it can be saved and loaded,
+/// and parry's routines for other pairs see that it is not theirs.
+pub(super) fn empty_workspace() -> ContactManifoldsWorkspace {
+    VoxelsShapeContactManifoldsWorkspace::<2>::new().into()
+}
+
+/// Leaves the one manifold that a pair of convex shapes has. If a shape had parts until now, the
+/// manifolds of its parts are still there, and rapier must notice that they go.
+pub(super) fn keep_one<M: Default + Clone, C: Default + Copy>(
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) {
+    let is_of_whole = |manifold: &ContactManifold<M, C>| {
+        manifold.subshape_poses.is_none() && [manifold.subshape1, manifold.subshape2] == [0, 0]
+    };
+    if let [manifold] = &manifolds[..]
+        && is_of_whole(manifold)
+    {
+        *workspace = None;
+        return;
+    }
+    *workspace = (!manifolds.is_empty()).then(empty_workspace);
+    manifolds.clear();
+    manifolds.push(ContactManifold::with_data(0, 0, M::default()));
+}
+
+/// A compound with a hull against another compound or a convex shape. `false` for other pairs.
+fn compound_with_hull<M, C>(
+    dispatcher: &dyn PersistentQueryDispatcher<M, C>,
+    pos12: &Pose,
+    [s1, s2]: [&dyn Shape; 2],
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) -> bool
+where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    let (compound, other, swapped) = match [s1.as_compound(), s2.as_compound()] {
+        [Some(c1), Some(c2)] => {
+            let ours = compound::has_hull(c1) || compound::has_hull(c2);
+            if ours {
+                let pair = [c1, c2];
+                compound::compounds(dispatcher, pos12, pair, prediction, manifolds, workspace);
+            }
+            return ours;
+        }
+        [Some(c1), None] => (c1, s2, false),
+        [None, Some(c2)] => (c2, s1, true),
+        [None, None] => return false,
+    };
+    let is_hull = pair::is_hull(other, other.shape_type());
+    let ours = other.is_convex() && (is_hull || compound::has_hull(compound));
+    if ours {
+        compound::compound_and_convex(
+            dispatcher, pos12, compound, other, swapped, prediction, manifolds, workspace,
+        );
+    }
+    ours
 }
 
 /// A height field against anything; one of the shapes is one.

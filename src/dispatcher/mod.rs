@@ -1,11 +1,14 @@
 //! The plug: rapier's narrow phase asks [`IsaGjkDispatcher`] instead of parry's own dispatcher.
 
 mod cache;
+mod cast;
 mod composite;
+mod compound;
 mod convex;
 mod half_space;
 mod hulls;
 mod pair;
+mod parts;
 mod scene;
 
 use parry3d::math::{Pose, Real, Vector};
@@ -18,6 +21,7 @@ use parry3d::query::{
 use parry3d::shape::Shape;
 
 use convex::UpdateManifold;
+use parts::Mover;
 
 use crate::stats::{SharedStats, Stats};
 
@@ -47,8 +51,11 @@ impl QueryDispatcher for IsaGjkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        match scene::near(pos12, g1, g2, 0.0) {
-            Some(near) => Ok(near.is_some_and(|n| n.intersecting()).into()),
+        if let Some(intersecting) = scene::intersect(pos12, g1, g2) {
+            return Ok(intersecting.into());
+        }
+        match parts::intersection_test(self, pos12, g1, g2) {
+            Some(intersection) => Ok(intersection),
             None => DEFAULT.intersection_test(pos12, g1, g2),
         }
     }
@@ -59,8 +66,11 @@ impl QueryDispatcher for IsaGjkDispatcher {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        match scene::near(pos12, g1, g2, Real::INFINITY) {
-            Some(near) => Ok(near.map_or(Real::INFINITY, |n| n.distance()).into()),
+        if let Some(distance) = scene::distance(pos12, g1, g2) {
+            return Ok(distance.into());
+        }
+        match parts::distance(self, pos12, g1, g2) {
+            Some(distance) => Ok(distance),
             None => DEFAULT.distance(pos12, g1, g2),
         }
     }
@@ -72,8 +82,9 @@ impl QueryDispatcher for IsaGjkDispatcher {
         g2: &dyn Shape,
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
-        match scene::near(pos12, g1, g2, prediction) {
-            Some(near) => Ok(near.map(|n| n.contact())),
+        let ours = scene::contact(pos12, g1, g2, prediction);
+        match ours.or_else(|| parts::contact(self, pos12, g1, g2, prediction)) {
+            Some(contact) => Ok(contact),
             None => DEFAULT.contact(pos12, g1, g2, prediction),
         }
     }
@@ -85,8 +96,9 @@ impl QueryDispatcher for IsaGjkDispatcher {
         g2: &dyn Shape,
         max_dist: Real,
     ) -> Result<ClosestPoints, Unsupported> {
-        match scene::near(pos12, g1, g2, max_dist) {
-            Some(near) => Ok(near.map_or(ClosestPoints::Disjoint, |n| n.closest_points())),
+        let ours = scene::closest_points(pos12, g1, g2, max_dist);
+        match ours.or_else(|| parts::closest_points(self, pos12, g1, g2, max_dist)) {
+            Some(points) => Ok(points),
             None => DEFAULT.closest_points(pos12, g1, g2, max_dist),
         }
     }
@@ -99,7 +111,13 @@ impl QueryDispatcher for IsaGjkDispatcher {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        DEFAULT.cast_shapes(pos12, local_vel12, g1, g2, options)
+        if let Some(hit) = cast::cast_shapes(pos12, local_vel12, g1, g2, options) {
+            return Ok(hit);
+        }
+        match parts::cast_shapes(self, pos12, local_vel12, g1, g2, options) {
+            Some(hit) => hit,
+            None => DEFAULT.cast_shapes(pos12, local_vel12, g1, g2, options),
+        }
     }
 
     fn cast_shapes_nonlinear(
@@ -112,15 +130,9 @@ impl QueryDispatcher for IsaGjkDispatcher {
         end_time: Real,
         stop_at_penetration: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        DEFAULT.cast_shapes_nonlinear(
-            motion1,
-            g1,
-            motion2,
-            g2,
-            start_time,
-            end_time,
-            stop_at_penetration,
-        )
+        let movers = [(motion1, g1), (motion2, g2)].map(|(motion, shape)| Mover { motion, shape });
+        parts::cast_shapes_nonlinear(self, movers, [start_time, end_time], stop_at_penetration)
+            .ok_or(Unsupported)
     }
 }
 
@@ -145,9 +157,7 @@ where
         {
             return Ok(());
         }
-        if manifolds.is_empty() {
-            manifolds.push(ContactManifold::new());
-        }
+        composite::keep_one(manifolds, workspace);
         self.contact_manifold_convex_convex(
             pos12,
             g1,

@@ -14,6 +14,7 @@ use crate::hull_shape::HullShape;
 use crate::manifold::ClipScratch;
 use crate::primitive::{Ball, CuboidPolytope, Segment, TrianglePolytope};
 use crate::support::Polytope;
+use crate::tolerance::THINNEST;
 
 /// What a thread keeps from query to query: prepared hulls, and memory to work in.
 #[derive(Default)]
@@ -92,7 +93,7 @@ pub(super) struct Scratch<'a> {
 }
 
 /// Whether a shape is a hull to us, so that pairs with it are ours to answer.
-fn is_hull(shape: &dyn Shape, shape_type: ShapeType) -> bool {
+pub(super) fn is_hull(shape: &dyn Shape, shape_type: ShapeType) -> bool {
     match shape_type {
         ShapeType::ConvexPolyhedron | ShapeType::RoundConvexPolyhedron => true,
         ShapeType::Custom => shape.as_shape::<HullShape>().is_some(),
@@ -168,15 +169,12 @@ fn solid<'a>(
         }
         ShapeType::Cuboid => {
             let extents = shape.as_cuboid()?.half_extents;
-            (Core::Cuboid(CuboidPolytope::new(extents.as_dvec3())), 0.0)
+            (cuboid(extents.as_dvec3())?, 0.0)
         }
         ShapeType::RoundCuboid => {
             let round = shape.as_round_cuboid()?;
             let extents = round.inner_shape.half_extents.as_dvec3();
-            (
-                Core::Cuboid(CuboidPolytope::new(extents)),
-                round.border_radius,
-            )
+            (cuboid(extents)?, round.border_radius)
         }
         ShapeType::Triangle => (triangle(shape.as_triangle()?)?, 0.0),
         ShapeType::RoundTriangle => {
@@ -202,6 +200,12 @@ fn solid<'a>(
         core,
         border: border.into(),
     })
+}
+
+/// `None` for a box that is a segment or a point: it has no faces with a plane.
+fn cuboid(half_extents: DVec3) -> Option<Core<'static>> {
+    let thin = half_extents.cmple(DVec3::splat(THINNEST * half_extents.max_element()));
+    (thin.bitmask().count_ones() < 2).then(|| Core::Cuboid(CuboidPolytope::new(half_extents)))
 }
 
 /// A length that tolerances can be relative to.

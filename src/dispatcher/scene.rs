@@ -1,4 +1,6 @@
 //! Queries without memory: distance, contact, closest points and intersection of hulls.
+//!
+//! Only `contact` asks how deep shapes overlap; the others end with GJK.
 
 use glam::DVec3;
 use parry3d::math::{Pose, Real};
@@ -8,45 +10,143 @@ use parry3d::shape::Shape;
 use super::cache::ordered;
 use super::half_space;
 use super::pair::{self, PairVisitor, Scratch};
+use crate::gjk::{self, Closest, Outcome};
 use crate::hull::Hull;
 use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Proximity, Query};
+use crate::simplex::Voronoi;
 use crate::stats::Cost;
 use crate::support::{Cso, Polytope};
 
-/// A pair within reach, its rounded borders accounted for; points in their own shapes' frames.
-pub(super) struct Near {
-    signed_distance: f64,
-    normals: [DVec3; 2],
-    points: [DVec3; 2],
+/// Whether two shapes touch or overlap. `None`, here and below: not a pair for us.
+pub(super) fn intersect(pos12: &Pose, shape_1: &dyn Shape, shape_2: &dyn Shape) -> Option<bool> {
+    let separation = separation(pos12, shape_1, shape_2, 0.0)?;
+    Some(matches!(separation, Separation::None))
 }
 
-/// Asks about a pair of hulls. `None`: not a pair for us. `Some(None)`: farther apart than
-/// `max_distance`.
-pub(super) fn near(
+/// Zero where the shapes overlap.
+pub(super) fn distance(pos12: &Pose, shape_1: &dyn Shape, shape_2: &dyn Shape) -> Option<Real> {
+    Some(match separation(pos12, shape_1, shape_2, Real::INFINITY)? {
+        Separation::None => 0.0,
+        Separation::Near(near) => near.signed_distance as Real,
+        Separation::Beyond => Real::INFINITY,
+    })
+}
+
+/// The nearest points of shapes that are at most `max_distance` apart.
+pub(super) fn closest_points(
     pos12: &Pose,
     shape_1: &dyn Shape,
     shape_2: &dyn Shape,
     max_distance: Real,
-) -> Option<Option<Near>> {
-    pair::visit(
-        shape_1,
-        shape_2,
-        ColdQuery {
-            pos12,
-            max_distance,
-        },
-    )
-    .flatten()
+) -> Option<ClosestPoints> {
+    Some(match separation(pos12, shape_1, shape_2, max_distance)? {
+        Separation::None => ClosestPoints::Intersecting,
+        Separation::Near(near) => {
+            let [p1, p2] = near.points.map(|p| p.as_vec3());
+            ClosestPoints::WithinMargin(p1, p2)
+        }
+        Separation::Beyond => ClosestPoints::Disjoint,
+    })
 }
 
-struct ColdQuery<'a> {
+/// The deepest contact of shapes that overlap or are at most `prediction` apart.
+pub(super) fn contact(
+    pos12: &Pose,
+    shape_1: &dyn Shape,
+    shape_2: &dyn Shape,
+    prediction: Real,
+) -> Option<Option<Contact>> {
+    let query = ContactQuery { pos12, prediction };
+    pair::visit(shape_1, shape_2, query).flatten()
+}
+
+/// The nearest points of a pair, its rounded borders accounted for. Normals and points are in
+/// their own shapes' frames.
+pub(super) struct Near {
+    pub signed_distance: f64,
+    pub normals: [DVec3; 2],
+    pub points: [DVec3; 2],
+}
+
+impl Near {
+    fn of_closest(near: &Closest, seen: &Seen<'_>) -> Self {
+        seen.near(near.normal, [near.on_1, near.on_2], near.distance)
+    }
+
+    pub fn of_proximity(near: &Proximity, seen: &Seen<'_>) -> Self {
+        seen.near(near.normal, [near.on_1, near.on_2], near.signed_distance)
+    }
+
+    fn contact(&self) -> Contact {
+        let [p1, p2] = self.points.map(|p| p.as_vec3());
+        let [n1, n2] = self.normals.map(|n| n.as_vec3());
+        Contact::new(p1, p2, n1, n2, self.signed_distance as Real)
+    }
+}
+
+/// How the kernels see a pair: the hull first, in whose frame they answer.
+pub(super) struct Seen<'a> {
+    /// Of the other shape, in the frame of the hull.
+    pub pose: &'a RelativePose,
+    pub borders: [f64; 2],
+    pub swapped: bool,
+}
+
+impl Seen<'_> {
+    /// From the normal and the points of the cores, in the frame of the hull.
+    pub fn near(&self, normal: DVec3, [on_1, on_2]: [DVec3; 2], distance: f64) -> Near {
+        let normals = [normal, -self.pose.direction_to_2(normal)];
+        let points = [on_1, self.pose.point_to_2(on_2)];
+        let points = [0, 1].map(|i| points[i] + normals[i] * self.borders[i]);
+        Near {
+            signed_distance: distance - self.borders[0] - self.borders[1],
+            normals: ordered(normals, self.swapped),
+            points: ordered(points, self.swapped),
+        }
+    }
+}
+
+/// What lies between two shapes.
+enum Separation {
+    /// Nothing: they touch or overlap.
+    None,
+    /// A gap, and where it is narrowest.
+    Near(Near),
+    /// More than was asked about.
+    Beyond,
+}
+
+impl Separation {
+    fn of(near: Near) -> Self {
+        if near.signed_distance <= 0.0 {
+            Self::None
+        } else {
+            Self::Near(near)
+        }
+    }
+}
+
+fn separation(
+    pos12: &Pose,
+    shape_1: &dyn Shape,
+    shape_2: &dyn Shape,
+    max_distance: Real,
+) -> Option<Separation> {
+    let query = SeparationQuery {
+        pos12,
+        max_distance,
+    };
+    pair::visit(shape_1, shape_2, query).flatten()
+}
+
+struct SeparationQuery<'a> {
     pos12: &'a Pose,
     max_distance: Real,
 }
 
-impl PairVisitor for ColdQuery<'_> {
-    type Output = Option<Option<Near>>;
+impl PairVisitor for SeparationQuery<'_> {
+    type Output = Option<Separation>;
 
     fn visit<B: Polytope>(
         self,
@@ -54,27 +154,27 @@ impl PairVisitor for ColdQuery<'_> {
         other: &B,
         borders: [f64; 2],
         swapped: bool,
-        scratch: &mut Scratch<'_>,
+        _scratch: &mut Scratch<'_>,
     ) -> Self::Output {
-        if !RelativePose::is_valid(self.pos12) {
-            return None;
-        }
-        let pose = RelativePose::of_first(self.pos12, swapped);
+        let pose = pose_seen(self.pos12, swapped)?;
         let cso = Cso {
             shape_1: hull,
             shape_2: other,
             pose: &pose,
         };
-        let (answer, _) = Query {
-            cso: &cso,
-            max_distance: f64::from(self.max_distance) + borders[0] + borders[1],
-            scratch: scratch.epa,
-            cost: &mut Cost::default(),
-        }
-        .run(&Memory::None)?;
-        Some(match answer {
-            Answer::Apart(_) => None,
-            Answer::Near(near) => Some(Near::new(&near, &pose, borders, swapped)),
+        let seen = Seen {
+            pose: &pose,
+            borders,
+            swapped,
+        };
+        let cost = &mut Cost::default();
+        let start = cso.vertex_towards_origin(cost);
+        let max_distance = f64::from(self.max_distance) + borders[0] + borders[1];
+        let outcome = gjk::distance::<Voronoi, _, _>(&cso, &[start], max_distance, cost);
+        Some(match outcome {
+            Outcome::Apart(_) => Separation::Beyond,
+            Outcome::Overlap(_) => Separation::None,
+            Outcome::Near(closest) => Separation::of(Near::of_closest(&closest, &seen)),
         })
     }
 
@@ -86,52 +186,86 @@ impl PairVisitor for ColdQuery<'_> {
         swapped: bool,
         _: &mut Scratch<'_>,
     ) -> Self::Output {
-        if !RelativePose::is_valid(self.pos12) {
-            return None;
-        }
-        let pose = RelativePose::of_first(self.pos12, swapped);
-        let cost = &mut Cost::default();
-        let near = half_space::deepest(hull, normal, &pose, &Memory::None, cost);
-        let reach = f64::from(self.max_distance) + border;
-        Some(
-            (near.signed_distance <= reach)
-                .then(|| Near::new(&near, &pose, [border, 0.0], swapped)),
-        )
+        let near = over_half_space(hull, normal, border, self.pos12, swapped)?;
+        Some(if near.signed_distance <= f64::from(self.max_distance) {
+            Separation::of(near)
+        } else {
+            Separation::Beyond
+        })
     }
 }
 
-impl Near {
-    fn new(near: &Proximity, pose: &RelativePose, borders: [f64; 2], swapped: bool) -> Self {
-        let normals = [near.normal, -pose.direction_to_2(near.normal)];
-        let points = [near.on_1, pose.point_to_2(near.on_2)];
-        Self {
-            signed_distance: near.signed_distance - borders[0] - borders[1],
-            normals: ordered(normals, swapped),
-            points: ordered([0, 1].map(|i| points[i] + normals[i] * borders[i]), swapped),
+fn pose_seen(pos12: &Pose, swapped: bool) -> Option<RelativePose> {
+    RelativePose::is_valid(pos12).then(|| RelativePose::of_first(pos12, swapped))
+}
+
+fn over_half_space(
+    hull: &Hull,
+    normal: DVec3,
+    border: f64,
+    pos12: &Pose,
+    swapped: bool,
+) -> Option<Near> {
+    let pose = pose_seen(pos12, swapped)?;
+    let deepest = half_space::deepest(hull, normal, &pose, &Memory::None, &mut Cost::default());
+    let seen = Seen {
+        pose: &pose,
+        borders: [border, 0.0],
+        swapped,
+    };
+    Some(Near::of_proximity(&deepest, &seen))
+}
+
+struct ContactQuery<'a> {
+    pos12: &'a Pose,
+    prediction: Real,
+}
+
+impl PairVisitor for ContactQuery<'_> {
+    type Output = Option<Option<Contact>>;
+
+    fn visit<B: Polytope>(
+        self,
+        hull: &Hull,
+        other: &B,
+        borders: [f64; 2],
+        swapped: bool,
+        scratch: &mut Scratch<'_>,
+    ) -> Self::Output {
+        let pose = pose_seen(self.pos12, swapped)?;
+        let cso = Cso {
+            shape_1: hull,
+            shape_2: other,
+            pose: &pose,
+        };
+        let seen = Seen {
+            pose: &pose,
+            borders,
+            swapped,
+        };
+        let (answer, _) = Query {
+            cso: &cso,
+            max_distance: f64::from(self.prediction) + borders[0] + borders[1],
+            scratch: scratch.epa,
+            cost: &mut Cost::default(),
         }
+        .run(&Memory::None)?;
+        Some(match answer {
+            Answer::Apart(_) => None,
+            Answer::Near(near) => Some(Near::of_proximity(&near, &seen).contact()),
+        })
     }
 
-    /// Zero where the shapes overlap.
-    pub fn distance(&self) -> Real {
-        self.signed_distance.max(0.0) as Real
-    }
-
-    pub fn intersecting(&self) -> bool {
-        self.signed_distance <= 0.0
-    }
-
-    pub fn contact(&self) -> Contact {
-        let [p1, p2] = self.points.map(|p| p.as_vec3());
-        let [n1, n2] = self.normals.map(|n| n.as_vec3());
-        Contact::new(p1, p2, n1, n2, self.signed_distance as Real)
-    }
-
-    pub fn closest_points(&self) -> ClosestPoints {
-        if self.intersecting() {
-            ClosestPoints::Intersecting
-        } else {
-            let [p1, p2] = self.points.map(|p| p.as_vec3());
-            ClosestPoints::WithinMargin(p1, p2)
-        }
+    fn visit_half_space(
+        self,
+        hull: &Hull,
+        normal: DVec3,
+        border: f64,
+        swapped: bool,
+        _: &mut Scratch<'_>,
+    ) -> Self::Output {
+        let near = over_half_space(hull, normal, border, self.pos12, swapped)?;
+        let within = near.signed_distance <= f64::from(self.prediction);
+        Some(within.then(|| near.contact()))
     }
 }

@@ -53,7 +53,7 @@ pub fn fill(
         Scene::Spin => filler.spinning()?,
         Scene::Top => filler.tops(),
         Scene::Rolling => filler.rolling(),
-        Scene::Trimesh => filler.trimesh()?,
+        Scene::Trimesh | Scene::Heightfield => filler.bumpy(scene)?,
         Scene::Pile | Scene::Cuboids | Scene::Balls | Scene::Mixed | Scene::Compound => {
             filler.pile();
         }
@@ -108,7 +108,8 @@ fn shapes(
         | Scene::Spin
         | Scene::Rolling
         | Scene::Asleep
-        | Scene::Trimesh => hulls::make(&params.hulls, count, random)?,
+        | Scene::Trimesh
+        | Scene::Heightfield => hulls::make(&params.hulls, count, random)?,
     })
 }
 
@@ -171,11 +172,16 @@ impl Filler<'_> {
         self.drop_in(side, half_width, 0.0);
     }
 
-    fn trimesh(&mut self) -> Result<(), String> {
+    /// On a bumpy mesh or height field.
+    fn bumpy(&mut self, scene: Scene) -> Result<(), String> {
         let (side, half_width) = self.column();
         let (side, half_width) = (2 * side, 2.0 * half_width);
         let cell = 1.5 * self.reach;
-        containers::bumpy_ground(self.world, half_width + 1.0, cell)?;
+        if scene == Scene::Trimesh {
+            containers::bumpy_mesh(self.world, half_width + 1.0, cell)?;
+        } else {
+            containers::bumpy_field(self.world, half_width + 1.0, cell);
+        }
         self.drop_in(side, half_width, cell);
         Ok(())
     }

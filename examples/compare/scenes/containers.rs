@@ -2,6 +2,7 @@
 
 use std::f32::consts::PI;
 
+use parry3d::utils::Array2;
 use rapier3d::prelude::*;
 
 use super::hulls;
@@ -68,17 +69,12 @@ pub fn walls(world: &mut World, half_width: Real, height: Real) {
 }
 
 /// A square of bumpy ground around height zero, in triangles about as large as `cell`.
-pub fn bumpy_ground(world: &mut World, half_width: Real, cell: Real) -> Result<(), String> {
-    let cells = (2.0 * half_width / cell).ceil() as u32;
-    let bump = |x: Real, z: Real| cell * 0.4 * ((x / cell).sin() + (0.8 * z / cell).cos());
-    let mut points = Vec::new();
-    for i in 0..=cells {
-        for k in 0..=cells {
-            let along = |step: u32| half_width * (2.0 * step as Real / cells as Real - 1.0);
-            let (x, z) = (along(i), along(k));
-            points.push(Vector::new(x, bump(x, z), z));
-        }
-    }
+pub fn bumpy_mesh(world: &mut World, half_width: Real, cell: Real) -> Result<(), String> {
+    let (cells, heights) = bumps(half_width, cell);
+    let along = |step: u32| half_width * (2.0 * step as Real / cells as Real - 1.0);
+    let corners = (0..=cells).flat_map(|i| (0..=cells).map(move |k| (i, k)));
+    let points = corners.zip(heights);
+    let points = points.map(|((i, k), height)| Vector::new(along(i), height, along(k)));
     let mut triangles = Vec::new();
     for i in 0..cells {
         for k in 0..cells {
@@ -88,8 +84,28 @@ pub fn bumpy_ground(world: &mut World, half_width: Real, cell: Real) -> Result<(
             triangles.push([corner + 1, next + 1, next]);
         }
     }
-    let mesh = ColliderBuilder::trimesh(points, triangles)
+    let mesh = ColliderBuilder::trimesh(points.collect(), triangles)
         .map_err(|error| format!("the ground is no valid mesh: {error}"))?;
     world.physics.insert_collider(mesh, None);
     Ok(())
+}
+
+/// The same ground as a height field.
+pub fn bumpy_field(world: &mut World, half_width: Real, cell: Real) {
+    let (cells, heights) = bumps(half_width, cell);
+    let corners = cells as usize + 1;
+    let heights = Array2::new(corners, corners, heights);
+    let size = Vector::new(2.0 * half_width, 1.0, 2.0 * half_width);
+    let field = ColliderBuilder::heightfield(heights, size);
+    world.physics.insert_collider(field, None);
+}
+
+/// How many cells there are along a side, and the heights of their corners, x by x.
+fn bumps(half_width: Real, cell: Real) -> (u32, Vec<Real>) {
+    let cells = (2.0 * half_width / cell).ceil() as u32;
+    let along = |step: u32| half_width * (2.0 * step as Real / cells as Real - 1.0);
+    let bump = |x: Real, z: Real| cell * 0.4 * ((x / cell).sin() + (0.8 * z / cell).cos());
+    let corners = (0..=cells).flat_map(|i| (0..=cells).map(move |k| (i, k)));
+    let heights = corners.map(|(i, k)| bump(along(i), along(k)));
+    (cells, heights.collect())
 }

@@ -47,11 +47,13 @@ pub enum Scene {
     Compound,
     /// Hulls dropped on a bumpy triangle mesh.
     Trimesh,
+    /// Hulls dropped on a bumpy height field.
+    Heightfield,
 }
 
 impl Scene {
     /// Every scene.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Drum,
         Self::Pile,
         Self::Stack,
@@ -67,6 +69,7 @@ impl Scene {
         Self::Mixed,
         Self::Compound,
         Self::Trimesh,
+        Self::Heightfield,
     ];
 
     /// The name on the command line and in tables.
@@ -87,6 +90,7 @@ impl Scene {
             Self::Mixed => "mixed",
             Self::Compound => "compound",
             Self::Trimesh => "trimesh",
+            Self::Heightfield => "heightfield",
         }
     }
 
@@ -98,7 +102,7 @@ impl Scene {
             Self::Spin | Self::Top => 16,
             Self::Dominoes | Self::Rolling => 64,
             Self::Stack | Self::Wall => 128,
-            Self::Coins | Self::Compound | Self::Trimesh => 256,
+            Self::Coins | Self::Compound | Self::Trimesh | Self::Heightfield => 256,
             Self::Asleep | Self::Cuboids | Self::Balls => 1000,
         }
     }
@@ -115,7 +119,8 @@ impl Scene {
             | Self::Asleep
             | Self::Mixed
             | Self::Compound
-            | Self::Trimesh => Hulls::Any,
+            | Self::Trimesh
+            | Self::Heightfield => Hulls::Any,
         }
     }
 

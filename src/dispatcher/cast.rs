@@ -1,0 +1,163 @@
+//! Shape casts of hulls, by the GJK ray cast.
+
+use glam::DVec3;
+use parry3d::math::{Pose, Real, Vector};
+use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus};
+use parry3d::shape::Shape;
+
+use super::pair::{self, PairVisitor, Scratch};
+use super::scene::{Near, Seen};
+use crate::hull::Hull;
+use crate::pose::RelativePose;
+use crate::query::{Answer, Memory, Query};
+use crate::ray_cast::{Impact, RayCast, ray_cast};
+use crate::simplex::Voronoi;
+use crate::stats::Cost;
+use crate::support::{Cso, Polytope};
+use crate::tolerance::{GRAZING, RAY_TOUCHING};
+
+/// When shape 2, moving by `velocity` relative to shape 1 (in frame 1), meets shape 1. The outer
+/// `None`: not a pair for us. As with parry, a shape that does not move meets nothing.
+pub(super) fn cast_shapes(
+    pos12: &Pose,
+    velocity: Vector,
+    shape_1: &dyn Shape,
+    shape_2: &dyn Shape,
+    options: ShapeCastOptions,
+) -> Option<Option<ShapeCastHit>> {
+    let cast = Cast {
+        pos12,
+        velocity,
+        options,
+    };
+    pair::visit(shape_1, shape_2, cast).flatten()
+}
+
+struct Cast<'a> {
+    pos12: &'a Pose,
+    velocity: Vector,
+    options: ShapeCastOptions,
+}
+
+impl PairVisitor for Cast<'_> {
+    type Output = Option<Option<ShapeCastHit>>;
+
+    fn visit<B: Polytope>(
+        self,
+        hull: &Hull,
+        other: &B,
+        borders: [f64; 2],
+        swapped: bool,
+        scratch: &mut Scratch<'_>,
+    ) -> Self::Output {
+        let moves = self.velocity.is_finite() && self.velocity != Vector::ZERO;
+        if !(moves && RelativePose::is_valid(self.pos12)) {
+            return Some(None);
+        }
+        let pose = RelativePose::of_first(self.pos12, swapped);
+        let cso = Cso {
+            shape_1: hull,
+            shape_2: other,
+            pose: &pose,
+        };
+        let seen = Seen {
+            pose: &pose,
+            borders,
+            swapped,
+        };
+        // That of the other shape as the hull sees it.
+        let velocity = self.velocity.as_dvec3();
+        let velocity = if swapped {
+            -pose.direction_to_1(velocity)
+        } else {
+            velocity
+        };
+        let impact = ray_cast::<Voronoi, _, _>(
+            &cso,
+            velocity,
+            self.options.max_time_of_impact.into(),
+            self.target_distance() + borders[0] + borders[1],
+            &mut Cost::default(),
+        );
+        match impact {
+            RayCast::Miss => Some(None),
+            RayCast::Hit(impact) => Some(Some(hit_at(&impact, velocity, &seen))),
+            // Also false for NaN.
+            RayCast::Overlap if self.options.max_time_of_impact >= 0.0 => {
+                self.overlap(&cso, velocity, &seen, scratch)
+            }
+            RayCast::Overlap => Some(None),
+        }
+    }
+
+    /// Left to parry.
+    fn visit_half_space(
+        self,
+        _: &Hull,
+        _: DVec3,
+        _: f64,
+        _: bool,
+        _: &mut Scratch<'_>,
+    ) -> Self::Output {
+        None
+    }
+}
+
+impl Cast<'_> {
+    /// Not negative, and not NaN.
+    fn target_distance(&self) -> f64 {
+        f64::from(self.options.target_distance).max(0.0)
+    }
+
+    /// Shapes that are within the target distance from the beginning.
+    fn overlap<A: Polytope, B: Polytope>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        velocity: DVec3,
+        seen: &Seen<'_>,
+        scratch: &mut Scratch<'_>,
+    ) -> Option<Option<ShapeCastHit>> {
+        let mut query = Query {
+            cso,
+            max_distance: f64::INFINITY,
+            scratch: scratch.epa,
+            cost: &mut Cost::default(),
+        };
+        let Answer::Near(near) = query.run(&Memory::None)?.0 else {
+            return Some(None);
+        };
+        let departs = near.normal.dot(velocity) >= -GRAZING * velocity.length();
+        if departs && !self.options.stop_at_penetration {
+            return Some(None);
+        }
+        let near = Near::of_proximity(&near, seen);
+        let slack = RAY_TOUCHING * cso.size();
+        let status = if near.signed_distance < self.target_distance() - slack {
+            ShapeCastStatus::PenetratingOrWithinTargetDist
+        } else {
+            ShapeCastStatus::Converged
+        };
+        Some(Some(hit(0.0, &near, status)))
+    }
+}
+
+fn hit_at(impact: &Impact, velocity: DVec3, seen: &Seen<'_>) -> ShapeCastHit {
+    let way = velocity * impact.time;
+    let near = seen.near(impact.normal, [impact.on_1, impact.on_2 - way], 0.0);
+    hit(impact.time, &near, ShapeCastStatus::Converged)
+}
+
+fn hit(time: f64, near: &Near, status: ShapeCastStatus) -> ShapeCastHit {
+    let [witness1, witness2] = near.points.map(|p| p.as_vec3());
+    let [normal1, normal2] = near.normals.map(|n| n.as_vec3());
+    ShapeCastHit {
+        time_of_impact: time as Real,
+        witness1,
+        witness2,
+        normal1,
+        normal2,
+        status,
+        subshape1: 0,
+        subshape2: 0,
+    }
+}

@@ -1,0 +1,182 @@
+//! A running world changes its dispatcher, and its shapes.
+//!
+//! The pairs keep the manifolds that another dispatcher or another shape has filled. None of that
+//! may be lost or believed: the contacts go on where they were, at the present distances.
+
+mod common;
+
+use std::collections::HashSet;
+
+use common::generate::Dice;
+use common::world::{Ground, check_places, deepest, mixed, ours};
+use isa_gjk::{HullShape, IsaGjkDispatcher};
+use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
+use rapier3d::prelude::*;
+
+const BODIES: usize = 28;
+
+/// The fastest body, in m/s.
+fn fastest(world: &PhysicsWorld) -> Real {
+    let speeds = world.bodies.iter().map(|(_, body)| body.linvel().length());
+    speeds.fold(0.0, Real::max)
+}
+
+#[test]
+fn a_running_world_changes_hands_and_back() {
+    for ground in Ground::ALL {
+        let mut world = mixed(ground, BODIES, NarrowPhase::new());
+        for turn in 0..6 {
+            let what = format!("turn {turn} on {ground:?}");
+            for _ in 0..60 {
+                world.step();
+                check_places(&world, &what);
+            }
+            let touching = |world: &PhysicsWorld| {
+                let pairs = world.narrow_phase.contact_pairs();
+                pairs.filter(|pair| pair.has_any_active_contact()).count()
+            };
+            let (contacts, speed) = (touching(&world), fastest(&world));
+            if turn % 2 == 0 {
+                let ours = IsaGjkDispatcher::default();
+                world.narrow_phase.set_query_dispatcher(ours);
+            } else {
+                let theirs = DefaultQueryDispatcher;
+                world.narrow_phase.set_query_dispatcher(theirs);
+            }
+            world
+                .bodies
+                .iter_mut()
+                .for_each(|(_, body)| body.wake_up(true));
+            world.step();
+            let after = touching(&world);
+            assert!(
+                4 * after > 3 * contacts,
+                "{what}: {contacts} to {after} contacts"
+            );
+            let jump = fastest(&world) - speed;
+            assert!(jump < 1.0, "{what}: thrown by {jump} m/s");
+        }
+        let depth = deepest(&world);
+        assert!(depth < 0.1, "{depth} deep on {ground:?}");
+    }
+}
+
+/// One hull on another, with contacts in every frame.
+fn pair_world(shapes: [SharedShape; 2]) -> (PhysicsWorld, [ColliderHandle; 2]) {
+    let mut world = PhysicsWorld {
+        narrow_phase: ours(),
+        ..PhysicsWorld::default()
+    };
+    world.integration_parameters.contact_recycling = false;
+    world.gravity = Vector::ZERO;
+    let handles = shapes.map(|shape| {
+        let body = RigidBodyBuilder::dynamic();
+        world.insert(body, ColliderBuilder::new(shape)).1
+    });
+    (world, handles)
+}
+
+/// That the manifolds of this step say what a dispatcher without a past says.
+fn assert_present(world: &mut PhysicsWorld, handles: [ColliderHandle; 2], what: &str) -> bool {
+    let bodies = handles.map(|handle| world.colliders[handle].parent().expect("a body"));
+    let places = [Pose::IDENTITY, Pose::translation(0.0, 0.5, 0.0)];
+    for (body, place) in bodies.into_iter().zip(places) {
+        let body = &mut world.bodies[body];
+        body.set_position(place, true);
+        body.set_linvel(Vector::ZERO, true);
+        body.set_angvel(Vector::ZERO, true);
+    }
+    // Distances are those of the beginning of a step.
+    world.step();
+    let [g1, g2] = handles.map(|handle| world.colliders[handle].shape());
+    let fresh = IsaGjkDispatcher::default();
+    let contact = fresh.contact(&places[1], g1, g2, 0.0);
+    let exact = contact.expect("supported").map(|contact| contact.dist);
+    let manifolds = world
+        .narrow_phase
+        .contact_pairs()
+        .flat_map(|pair| pair.manifolds());
+    let points = manifolds.flat_map(|manifold| &manifold.points);
+    let found = points.map(|point| point.dist).reduce(Real::min);
+    let error = match (exact, found) {
+        (Some(exact), Some(found)) => (exact - found).abs(),
+        (Some(exact), None) => -exact,
+        // Only near.
+        (None, found) => found.map_or(0.0, |dist| (-dist).max(0.0)),
+    };
+    assert!(error < 1.0e-5, "{what}: {found:?} for {exact:?}");
+    exact.is_some()
+}
+
+fn points_address(shape: &SharedShape) -> usize {
+    shape
+        .as_convex_polyhedron()
+        .map_or(0, |hull| hull.points().as_ptr().addr())
+}
+
+/// New hulls take the places of old ones, with as many corners, at the addresses that those left.
+#[test]
+fn replaced_shapes_are_not_answered_for_the_dead() {
+    let mut dice = Dice::new(71);
+    let mut hull = || dice.hull(20, 1.0).shape;
+    let (mut world, handles) = pair_world([hull(), hull()]);
+    let (mut seen, mut reused, mut touching) = (HashSet::new(), 0, 0);
+    for turn in 0..200 {
+        let collider = &mut world.colliders[handles[turn % 2]];
+        // The old shape dies first, and leaves its address to the new one.
+        collider.set_shape(SharedShape::ball(0.1));
+        let shape = hull();
+        reused += usize::from(!seen.insert(points_address(&shape)));
+        collider.set_shape(shape);
+        let what = format!("turn {turn}");
+        touching += usize::from(assert_present(&mut world, handles, &what));
+    }
+    assert!(reused > 20, "only {reused} addresses were used again");
+    assert!(touching > 20, "only {touching} contacts");
+}
+
+/// A prepared hull in the place of a plain one, scaled, and shared with another collider.
+#[test]
+fn shapes_change_kind_and_size() {
+    let mut dice = Dice::new(72);
+    let (mut world, handles) = pair_world([(); 2].map(|()| dice.hull(30, 1.0).shape));
+    let mut touching = 0;
+    for turn in 0..120 {
+        let hull = dice.hull(30, 1.0).shape;
+        let polyhedron = hull.as_convex_polyhedron().expect("a hull").clone();
+        let prepared = HullShape::try_from(polyhedron.clone()).expect("a solid");
+        let collider = &mut world.colliders[handles[0]];
+        match turn % 4 {
+            0 => collider.set_shape(SharedShape::new(prepared)),
+            1 => {
+                let scale = Vector::new(0.8, 1.2, 0.9);
+                let scaled = collider.shape().scale_dyn(scale, 0).expect("a solid");
+                collider.set_shape(SharedShape(scaled.into()));
+            }
+            2 => collider.set_shape(hull),
+            _ => {
+                let shape = collider.shape_mut().as_convex_polyhedron_mut();
+                *shape.expect("a hull") = polyhedron;
+            }
+        }
+        let what = format!("turn {turn}");
+        touching += usize::from(assert_present(&mut world, handles, &what));
+    }
+    assert!(touching > 30, "only {touching} contacts");
+}
+
+/// A compound becomes a single hull, and back: the contacts of its parts go with it, and rapier's
+/// solver graph (which checks itself in builds like this one) forgets them.
+#[test]
+fn parts_leave_no_contacts_behind() {
+    let mut dice = Dice::new(73);
+    let (mut world, handles) = pair_world([(); 2].map(|()| dice.hull(30, 1.0).shape));
+    for turn in 0..60 {
+        let [whole, left, right] = [(); 3].map(|()| dice.hull(20, 1.0).shape);
+        let aside = |x: Real| Pose::translation(x, 0.0, 0.0);
+        let parts = vec![(aside(-0.4), left), (aside(0.4), right)];
+        let shape = [whole, SharedShape::compound(parts)][turn % 2].clone();
+        world.colliders[handles[turn / 2 % 2]].set_shape(shape);
+        assert_present(&mut world, handles, &format!("turn {turn}"));
+    }
+}
