@@ -13,7 +13,7 @@
 //! What another dispatcher or a different pair left there is as good as any other hint.
 
 use glam::{DVec3, Vec3};
-use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::query::ContactManifold;
 use parry3d::shape::PackedFeatureId;
 
 use crate::gjk::SeparatingAxis;
@@ -100,12 +100,12 @@ pub(super) fn pack(feature: Feature) -> PackedFeatureId {
 /// Whether an old contact and a new one are between the same features. A vertex that moves on from
 /// one face to the next stays what it is.
 #[inline]
-pub(super) fn is_same<C>(old: &TrackedContact<C>, new: &TrackedContact<C>) -> bool {
-    let kinds = |contact: &TrackedContact<C>| [contact.fid1.0 & KIND, contact.fid2.0 & KIND];
+pub(super) fn is_same(old: [PackedFeatureId; 2], new: [PackedFeatureId; 2]) -> bool {
+    let kinds = |ids: [PackedFeatureId; 2]| ids.map(|id| id.0 & KIND);
     match kinds(old) {
-        [VERTEX, FACE] => old.fid1 == new.fid1 && kinds(new) == [VERTEX, FACE],
-        [FACE, VERTEX] => old.fid2 == new.fid2 && kinds(new) == [FACE, VERTEX],
-        _ => old.fid1 == new.fid1 && old.fid2 == new.fid2,
+        [VERTEX, FACE] => old[0] == new[0] && kinds(new) == [VERTEX, FACE],
+        [FACE, VERTEX] => old[1] == new[1] && kinds(new) == [FACE, VERTEX],
+        _ => old == new,
     }
 }
 

@@ -1,9 +1,10 @@
 //! The contact manifold of two convex shapes, coherently.
 
 use glam::DVec3;
-use parry3d::math::{Pose, Real};
+use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::PackedFeatureId;
 
 use super::pair::{PairVisitor, Scratch};
 use super::{cache, half_space};
@@ -142,6 +143,39 @@ impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
     }
 }
 
+/// A tracked contact before it has data.
+#[derive(Clone, Copy)]
+struct Place {
+    points: [Vector; 2],
+    ids: [PackedFeatureId; 2],
+    distance: Real,
+}
+
+impl Place {
+    const NOWHERE: Self = Self {
+        points: [Vector::ZERO; 2],
+        ids: [PackedFeatureId::UNKNOWN; 2],
+        distance: 0.0,
+    };
+
+    fn put_into<C>(&self, contact: &mut TrackedContact<C>) {
+        [contact.local_p1, contact.local_p2] = self.points;
+        [contact.fid1, contact.fid2] = self.ids;
+        contact.dist = self.distance;
+    }
+
+    fn with<C>(&self, data: C) -> TrackedContact<C> {
+        TrackedContact {
+            local_p1: self.points[0],
+            local_p2: self.points[1],
+            dist: self.distance,
+            fid1: self.ids[0],
+            fid2: self.ids[1],
+            data,
+        }
+    }
+}
+
 /// Replaces the manifold's points, and hands the data (the solver's impulses) of the old ones on.
 fn write_points<M, C: Default + Copy>(
     manifold: &mut ContactManifold<M, C>,
@@ -152,48 +186,59 @@ fn write_points<M, C: Default + Copy>(
 ) {
     let normals = cache::ordered([manifold.local_n1, manifold.local_n2], swapped);
     let [n1, n2] = normals.map(|n| n.as_dvec3());
-    let points = &mut manifold.points;
-    let old_len = points.len();
-    points.extend(contacts.as_slice().iter().map(|contact| {
-        let [fid1, fid2] = cache::ordered(contact.features.map(cache::pack), swapped);
+    let contacts = contacts.as_slice();
+    let mut places = [Place::NOWHERE; manifold::MAX_POINTS];
+    for (place, contact) in places.iter_mut().zip(contacts) {
         let points = [
             contact.on_1 + n1 * borders[0],
             pose.point_to_2(contact.on_2) + n2 * borders[1],
         ];
-        let [local_p1, local_p2] = cache::ordered(points.map(|p| p.as_vec3()), swapped);
-        TrackedContact {
-            local_p1,
-            local_p2,
-            dist: (contact.distance - borders[0] - borders[1]) as Real,
-            fid1,
-            fid2,
-            data: C::default(),
+        place.points = cache::ordered(points.map(|p| p.as_vec3()), swapped);
+        place.ids = cache::ordered(contact.features.map(cache::pack), swapped);
+        place.distance = (contact.distance - borders[0] - borders[1]) as Real;
+    }
+    let places = &places[..contacts.len()];
+    let tracked = &mut manifold.points;
+    let heirs = heirs(tracked, places);
+    let in_place = |(i, heir): (usize, &Option<usize>)| *heir == Some(i);
+    if tracked.len() == places.len() && heirs[..places.len()].iter().enumerate().all(in_place) {
+        // Copies of the data would cost more than all the rest.
+        for (contact, place) in tracked.iter_mut().zip(places) {
+            place.put_into(contact);
         }
-    }));
-    let (old, new) = points.split_at_mut(old_len);
-    hand_over(old, new);
-    points.drain(..old_len);
+        return;
+    }
+    let data = heirs.map(|heir| heir.map_or_else(C::default, |j| tracked[j].data));
+    tracked.clear();
+    tracked.extend(
+        places
+            .iter()
+            .zip(data)
+            .map(|(place, data)| place.with(data)),
+    );
 }
 
-/// Gives each new contact the data of the old one between the same features. What is left over
-/// goes to the nearest of the others, however far: an impulse in a wrong place of the patch is a
-/// better start for the solver than a body that is borne by three contacts of four.
-fn hand_over<C: Copy>(old: &[TrackedContact<C>], new: &mut [TrackedContact<C>]) {
+/// For each new contact the old one whose data it takes over: that between the same features. What
+/// is left over goes to the nearest of the others, however far: an impulse in a wrong place of the
+/// patch is a better start for the solver than a body that is borne by three contacts of four.
+fn heirs<C>(old: &[TrackedContact<C>], new: &[Place]) -> [Option<usize>; manifold::MAX_POINTS] {
     let old = &old[..old.len().min(MAX_OLD)];
+    let mut heirs = [None; manifold::MAX_POINTS];
     let mut left = [true; MAX_OLD];
-    let mut waiting = [true; manifold::MAX_POINTS];
-    for (new, waiting) in new.iter_mut().zip(&mut waiting) {
-        if let Some(i) = old.iter().position(|old| cache::is_same(old, new)) {
-            new.data = old[i].data;
-            (left[i], *waiting) = (false, false);
+    for (heir, new) in heirs.iter_mut().zip(new) {
+        let same = |old: &TrackedContact<C>| cache::is_same([old.fid1, old.fid2], new.ids);
+        if let Some(j) = old.iter().position(same) {
+            *heir = Some(j);
+            left[j] = false;
         }
     }
-    for (new, _) in new.iter_mut().zip(waiting).filter(|(_, waiting)| *waiting) {
-        let away = |i: &usize| old[*i].local_p1.distance_squared(new.local_p1);
-        let others = (0..old.len()).filter(|i| left[*i]);
-        if let Some(i) = others.min_by(|i, j| away(i).total_cmp(&away(j))) {
-            new.data = old[i].data;
-            left[i] = false;
+    for (heir, new) in heirs.iter_mut().zip(new).filter(|(heir, _)| heir.is_none()) {
+        let away = |j: &usize| old[*j].local_p1.distance_squared(new.points[0]);
+        let others = (0..old.len()).filter(|j| left[*j]);
+        *heir = others.min_by(|j, k| away(j).total_cmp(&away(k)));
+        if let Some(j) = *heir {
+            left[j] = false;
         }
     }
+    heirs
 }

@@ -61,7 +61,7 @@ pub(super) fn intersect(polygons: &mut Polygons, slack: f64) {
     } = polygons;
     corners.clear();
     inside.clear();
-    inside.resize(subject.len(), true);
+    inside.extend(subject.iter().map(|_| true));
     let ends = window.iter().cycle().skip(1);
     for (i, (&from, &to)) in window.iter().zip(ends).enumerate() {
         let side = Side::new(from, to, slack);
@@ -78,9 +78,9 @@ pub(super) fn intersect(polygons: &mut Polygons, slack: f64) {
 struct Side {
     from: DVec2,
     along: DVec2,
-    /// How far below the line still counts as inside, in heights; the same along it, as a share.
+    length_squared: f64,
+    /// What still counts as inside: in heights, and along the side.
     slack: f64,
-    overhang: f64,
 }
 
 impl Side {
@@ -91,44 +91,52 @@ impl Side {
         Self {
             from,
             along,
+            length_squared: along.length_squared(),
             slack: slack * length,
-            overhang: slack / length,
         }
     }
 
-    /// Positive inside.
-    fn height(&self, p: DVec2) -> f64 {
-        self.along.perp_dot(p - self.from)
+    /// The place of a point along the side, from 0 to the length squared, and its height over it,
+    /// positive inside.
+    fn place(&self, p: DVec2) -> DVec2 {
+        let from = p - self.from;
+        DVec2::new(self.along.dot(from), self.along.perp_dot(from))
     }
 
     /// Strikes the subject's corners below this side from `inside`, and adds what the `i`-th
     /// side has of the intersection's corners.
     fn cut(&self, i: u16, subject: &[DVec2], inside: &mut [bool], corners: &mut Vec<ClipVertex>) {
-        // Where the subject begins and ends on this line, as shares of the side.
-        let (mut begin, mut end) = (f64::INFINITY, f64::NEG_INFINITY);
+        // Whether the line enters or leaves the subject before the side's start, and after it.
+        let (mut before, mut after) = (false, false);
         // A line of two corners has no side back.
         let mut j = if subject.len() == 2 {
             0
         } else {
             subject.len() - 1
         };
-        let mut last = subject[j];
-        let mut last_height = self.height(last);
+        let mut last = self.place(subject[j]);
         for (next, (&corner, inside)) in subject.iter().zip(inside).enumerate() {
-            let height = self.height(corner);
-            *inside &= height >= -self.slack;
-            if (height < 0.0) != (last_height < 0.0) {
-                let at = last.lerp(corner, last_height / (last_height - height));
-                let share = self.along.dot(at - self.from) / self.along.length_squared();
-                begin = begin.min(share);
-                end = end.max(share);
-                if -self.overhang <= share && share <= 1.0 + self.overhang {
+            let place = self.place(corner);
+            *inside &= place.y >= -self.slack;
+            if (place.y < 0.0) != (last.y < 0.0) {
+                // Where the line is crossed, as a fraction: no division for what is not needed.
+                let fall = last.y - place.y;
+                let (share, whole) = (
+                    (last.y * place.x - place.y * last.x) * fall.signum(),
+                    fall.abs(),
+                );
+                before |= share <= 0.0;
+                after |= share >= 0.0;
+                if share >= -self.slack * whole
+                    && share <= (self.length_squared + self.slack) * whole
+                {
+                    let at = subject[j].lerp(corner, last.y / fall);
                     corners.push(ClipVertex::new(at, Tag::Crossing(i, j as u16)));
                 }
             }
-            (last, last_height, j) = (corner, height, next);
+            (last, j) = (place, next);
         }
-        if begin <= 0.0 && 0.0 <= end {
+        if before && after {
             corners.push(ClipVertex::new(self.from, Tag::Window(i)));
         }
     }
