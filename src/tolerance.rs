@@ -23,9 +23,13 @@ pub const CAP_ANGLE_COS: f64 = 0.999_847_7;
 /// its plane by several degrees.
 pub const SLIVER: f64 = 4e-6;
 
-/// How far (relative to the radius) a hull vertex may lie above the plane of a neighbouring
-/// triangle. Hull builders working in f32 leave defects of a few roundings.
-pub const CONVEXITY: f64 = 4e-6;
+/// How deep (relative to the radius) an edge may be a dent: sixteen f32 roundings. Of a needle a
+/// climb may lose many times what its dents are deep.
+pub const CONVEXITY: f64 = 1e-6;
+
+/// A triangle lower than this share of the radius may face inwards by the rounding of its corners;
+/// a higher one that does is a fold of the surface. Ten f32 roundings.
+pub const FOLD: f64 = 6e-7;
 
 /// A hull whose smallest extent is below this share of its radius has no usable interior.
 pub const THINNEST: f64 = 1e-6;

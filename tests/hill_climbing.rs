@@ -3,13 +3,15 @@
 
 mod common;
 
+use std::f64::consts::TAU;
+
 use common::cases::hulls;
 use common::generate::Dice;
 use glam::{DQuat, DVec2, DVec3, Vec3};
 use isa_gjk::Hull;
 use isa_gjk::stats::Cost;
 use isa_gjk::support::{Polytope, Support};
-use isa_gjk::tolerance::PLATEAU;
+use isa_gjk::tolerance::{CONVEXITY, PLATEAU};
 
 /// The climb as it was published (Cameron 1997): move to a better neighbour while there is one.
 /// Kept here to show where it fails.
@@ -265,6 +267,61 @@ fn rounded_hulls_build() {
         refused.len(),
         builds.len()
     );
+}
+
+/// Spikes on rough discs, and long prisms: the builder, working in f32, takes their cross-section
+/// for rounding, and folds their surface or wraps it around them twice.
+fn needles(dice: &mut Dice, length: f64) -> Vec<(String, Hull)> {
+    let mut needles = Vec::new();
+    for i in 0..80 {
+        let mut spike: Vec<DVec3> = (0..20)
+            .map(|_| dice.direction() * DVec3::new(1.0, 1.0, 0.01))
+            .collect();
+        spike.push(DVec3::new(0.001, -0.002, length));
+        let sides = dice.count(4, 16);
+        let corner = |k: usize| DVec2::from_angle(TAU * k as f64 / sides as f64);
+        let prism = (0..sides)
+            .flat_map(|k| [-0.5, 0.5].map(|end| corner(k).extend(end * length)))
+            .collect();
+        for (kind, corners) in [("spike", spike), ("prism", prism)] {
+            let points: Vec<Vec3> = corners.iter().map(|p| p.as_vec3()).collect();
+            let name = format!("{kind} {i} of 1:{length}");
+            let hull = Hull::from_points(&points).unwrap_or_else(|e| panic!("{name}: {e}"));
+            needles.push((name, hull));
+        }
+    }
+    needles
+}
+
+fn climb_needles(length: f64, limit: f64) {
+    let mut dice = Dice::new(1000);
+    let needles = needles(&mut dice, length);
+    let mut tally = Tally::default();
+    for (name, hull) in &needles {
+        // Across the needle as often as along it.
+        let dirs = (0..200).map(|_| dice.direction() / DVec3::new(1.0, 1.0, length));
+        for dir in dirs.collect::<Vec<_>>() {
+            tally.climb(name, hull, dir, 0..hull.points().len() as u32);
+        }
+    }
+    tally.conclude(&format!("needles of 1:{length}"), limit);
+    climb_adversarially(&format!("needles of 1:{length}"), &needles, 20, limit);
+}
+
+#[test]
+fn climbs_on_needles_end_at_the_top() {
+    for length in [30.0, 100.0, 300.0, 1000.0] {
+        climb_needles(length, ROUNDED);
+    }
+}
+
+/// Of needles this thin the cross-section is a few roundings of the length: a climb may lose what
+/// their hull may be dented by.
+#[test]
+fn climbs_on_the_thinnest_needles_end_near_the_top() {
+    for length in [1.0e4, 1.0e5] {
+        climb_needles(length, 2.0 * CONVEXITY / PLATEAU);
+    }
 }
 
 #[test]

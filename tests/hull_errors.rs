@@ -221,6 +221,26 @@ fn surfaces_with_a_dent() {
     }
 }
 
+/// All edges are convex, and all triangles face outwards.
+#[test]
+fn surfaces_that_go_round_twice() {
+    let ring = |i: usize| {
+        let angle = TAU * i as f64 / 5.0;
+        Vec3::new(angle.cos() as f32, angle.sin() as f32, 0.0)
+    };
+    let bipyramid = |step: usize| {
+        let points = (0..5).map(ring).chain([Vec3::Z, Vec3::NEG_Z]).collect();
+        let triangles: Vec<[u32; 3]> = (0..5)
+            .map(|i| [i, (i + step) % 5].map(|v| v as u32))
+            .flat_map(|[a, b]| [[a, b, 5], [b, a, 6]])
+            .collect();
+        Hull::from_triangles(points, &triangles)
+    };
+    assert!(bipyramid(1).is_ok(), "around a pentagon");
+    let error = bipyramid(2).expect_err("around a pentagram");
+    assert!(matches!(error, HullError::NotConvex(_)), "{error:?}");
+}
+
 #[test]
 fn duplicates_do_not_disturb_a_point_cloud() {
     let mut dice = Dice::new(3);

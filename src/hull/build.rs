@@ -4,14 +4,14 @@ use glam::{DVec3, Vec3};
 
 use super::climb::{self, Slope};
 use super::cloud;
-use super::faces::Faces;
+use super::faces::{Faces, area_vector, longest_side};
 use super::graph::EdgeGraph;
 use super::start::StartTable;
 use super::surface::{Surface, next};
 use super::{Hull, HullError};
 use crate::stats::Cost;
 use crate::support::{FaceId, Polytope};
-use crate::tolerance::{CONVEXITY, THINNEST};
+use crate::tolerance::{CONVEXITY, FOLD, THINNEST};
 
 /// The most vertices a hull may have: its at most `2 n - 4` faces must have 16-bit names.
 const MAX_VERTICES: usize = 32_768;
@@ -58,6 +58,7 @@ impl Hull {
         let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
         let (center, radius) = center_and_radius(&exact, triangles)?;
         require_convex(&exact, &surface, radius)?;
+        require_single_layer(&exact, triangles, center, radius)?;
 
         let (mut faces, face_of) = Faces::new(&exact, &surface, radius);
         let graph = EdgeGraph::new(&surface, &face_of);
@@ -150,7 +151,8 @@ fn center_and_radius(points: &[DVec3], triangles: &[[u32; 3]]) -> Result<(DVec3,
     Ok((center, farthest(center)))
 }
 
-/// No edge is a dent, beyond rounding. For a closed surface, convexity at every edge is convexity.
+/// No edge is a dent, beyond rounding. For a closed surface in a single layer, convexity at every
+/// edge is convexity.
 ///
 /// A dent is as deep as the edge passes beneath the other diagonal of its two triangles. (Heights
 /// over the triangles' planes say nothing where these are slivers.)
@@ -171,3 +173,34 @@ fn require_convex(points: &[DVec3], surface: &Surface<'_>, radius: f64) -> Resul
     }
     Ok(())
 }
+
+/// The surface goes around the centre once: no triangle faces it, except where rounding turns a
+/// sliver, and a ray from it leaves but once.
+///
+/// All edges of a fold may be convex, and all edges of two layers that end in each other. Hull
+/// builders working in f32 leave such on needles, whose cross-section they take for rounding; a
+/// climb would be trapped there far below the top.
+fn require_single_layer(
+    points: &[DVec3],
+    triangles: &[[u32; 3]],
+    center: DVec3,
+    radius: f64,
+) -> Result<(), HullError> {
+    let mut crossings = 0;
+    for &triangle in triangles {
+        let normal = area_vector(points, triangle);
+        let [a, b, c] = triangle.map(|v| points[v as usize] - center);
+        let is_sliver = || normal.length() <= FOLD * radius * longest_side(points, triangle);
+        let is_fold = normal.dot(a) < 0.0 && !is_sliver();
+        // The ray passes the sides on the left.
+        let passes = |from: DVec3, to: DVec3| from.cross(to).dot(SOME_DIRECTION) > 0.0;
+        crossings += u32::from(passes(a, b) && passes(b, c) && passes(c, a));
+        if is_fold || crossings > 1 {
+            return Err(HullError::NotConvex(triangle[0] as usize));
+        }
+    }
+    Ok(())
+}
+
+/// None in which a hull is likely to have an edge.
+const SOME_DIRECTION: DVec3 = DVec3::new(0.267_3, -0.534_7, 0.801_7);

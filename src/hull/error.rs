@@ -24,7 +24,8 @@ pub enum HullError {
     NotManifold,
     /// The triangles turn clockwise seen from outside.
     InsideOut,
-    /// The surface is not convex: this vertex lies above the plane of a neighbouring triangle.
+    /// The surface is not convex: this vertex lies above the plane of a neighbouring triangle, or
+    /// is a corner of a triangle that faces inwards or lies over another one.
     NotConvex(usize),
     /// The hull builder gave up on the points.
     BuilderFailed,

@@ -190,12 +190,12 @@ impl Faces {
 }
 
 /// Twice the area vector of a triangle.
-fn area_vector(points: &[DVec3], triangle: [u32; 3]) -> DVec3 {
+pub(super) fn area_vector(points: &[DVec3], triangle: [u32; 3]) -> DVec3 {
     let [a, b, c] = triangle.map(|v| points[v as usize]);
     (b - a).cross(c - a)
 }
 
-fn longest_side(points: &[DVec3], triangle: [u32; 3]) -> f64 {
+pub(super) fn longest_side(points: &[DVec3], triangle: [u32; 3]) -> f64 {
     let [a, b, c] = triangle.map(|v| points[v as usize]);
     a.distance(b).max(b.distance(c)).max(c.distance(a))
 }
