@@ -36,8 +36,9 @@
 //! assert!(low.abs() < 0.01 && (high - 0.5).abs() < 0.01, "one stands on the other");
 //!
 //! let stats = dispatcher.stats();
-//! println!("{} of {} queries ended at once", stats.answered[0], stats.queries());
-//! # assert!(stats.queries() > 0);
+//! let remembered = stats.answered[Stage::Feature as usize];
+//! println!("{remembered} of {} queries ended with the features of the frame before", stats.queries());
+//! # assert!(remembered > 0);
 //! # Ok::<(), HullError>(())
 //! ```
 //!
