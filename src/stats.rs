@@ -9,20 +9,20 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 pub enum Stage {
     /// The balls around the shapes are apart.
     Balls,
-    /// One or two support pairs proved separation: along the axis of the previous frame, or along
-    /// one tilted from it.
+    /// One or two support pairs proved separation: along the axis of the previous frame (the line
+    /// of centres, for a new pair), or along one tilted from it.
     Axis,
     /// The features of the previous frame, re-evaluated, certified separation, distance or depth.
     Feature,
-    /// Features near the previous ones did, walked to from facet to facet.
+    /// Features near the previous ones, or near that axis, did: walked to from facet to facet.
     Walk,
     /// GJK started from the previous frame's axis and vertices.
     WarmGjk,
     /// Penetration depth expanded from the previous frame's features.
     WarmEpa,
-    /// GJK without a previous frame.
+    /// GJK without a previous frame, after the stages above.
     ColdGjk,
-    /// Penetration depth without a previous frame.
+    /// Penetration depth without a previous frame, after the stages above.
     ColdEpa,
 }
 

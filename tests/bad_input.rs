@@ -294,7 +294,7 @@ fn scaled(hull: &Hull, scale: Real) -> Hull {
 
 /// A pebble of a millimetre on a rock of a kilometre: as exact as f32 places it.
 #[test]
-fn sizes_a_million_apart() {
+fn sizes_may_be_a_million_apart() {
     const ROUNDING: f64 = 1.0e3 * 1.0e-6;
     let mut report = Report::new("sizes a million apart");
     let mut dice = Dice::new(22);
@@ -320,7 +320,7 @@ fn sizes_a_million_apart() {
 
 /// Both bodies ten kilometres out: their relative pose is only as good as f32 makes it.
 #[test]
-fn ten_kilometres_from_the_origin() {
+fn bodies_may_be_ten_kilometres_from_the_origin() {
     const ROUNDING: f64 = 1.0e-5;
     let mut report = Report::new("ten kilometres from the origin");
     let mut dice = Dice::new(23);
@@ -346,7 +346,7 @@ fn ten_kilometres_from_the_origin() {
 
 /// Ten kilometres apart, or built ten kilometres from their own origins.
 #[test]
-fn large_relative_translations() {
+fn relative_translations_may_be_large() {
     const ROUNDING: f64 = 1.0e4 * 1.0e-6;
     let mut report = Report::new("large relative translations");
     let mut dice = Dice::new(24);
@@ -388,7 +388,7 @@ fn moved(hull: &Hull, shift: DVec3) -> Hull {
 }
 
 #[test]
-fn tetrahedra() {
+fn tetrahedra_are_answered_exactly() {
     let mut report = Report::new("tetrahedra");
     let mut dice = Dice::new(25);
     for turn in 0..300 {
@@ -401,7 +401,7 @@ fn tetrahedra() {
 
 /// A millionth as thick as wide.
 #[test]
-fn almost_flat_tetrahedra() {
+fn almost_flat_tetrahedra_are_answered_exactly() {
     let mut report = Report::new("almost flat tetrahedra");
     let mut dice = Dice::new(26);
     for thickness in [1.0e-3, 1.0e-5, 1.0e-6] {

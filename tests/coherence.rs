@@ -234,7 +234,7 @@ fn random_scene<'a>(dice: &mut Dice, a: &'a Hull, b: &'a Hull, reach: f64) -> Sc
 }
 
 #[test]
-fn published_trajectories() {
+fn published_trajectories_are_answered_warm_as_cold() {
     let mut report = Report::new("published trajectories");
     for frames in trajectories() {
         let scenes = frames.iter().map(|case| {
@@ -254,7 +254,7 @@ fn published_trajectories() {
 }
 
 #[test]
-fn smooth_motions() {
+fn smooth_motions_are_answered_warm_as_cold() {
     let mut report = Report::new("smooth random motions");
     let mut dice = Dice::new(1);
     for motion in 0..100 {
@@ -270,7 +270,7 @@ fn smooth_motions() {
 }
 
 #[test]
-fn teleports() {
+fn a_teleport_is_answered_as_if_nothing_were_remembered() {
     let mut report = Report::new("teleports");
     let mut dice = Dice::new(2);
     for motion in 0..100 {
@@ -327,7 +327,7 @@ fn judge_with(report: &mut Report, route: &str, id: &str, scene: &Scene, mut mem
 }
 
 #[test]
-fn manifolds_of_another_dispatcher() {
+fn manifolds_of_another_dispatcher_do_no_harm() {
     let mut report = Report::new("manifolds filled by parry");
     let mut dice = Dice::new(3);
     for pair in 0..100 {
@@ -353,7 +353,7 @@ fn manifolds_of_another_dispatcher() {
 }
 
 #[test]
-fn manifolds_of_larger_hulls() {
+fn manifolds_of_larger_hulls_do_no_harm() {
     let mut report = Report::new("manifolds of other hulls");
     let mut dice = Dice::new(4);
     for pair in 0..100 {
@@ -390,7 +390,7 @@ fn random_pose_scene<'a>(dice: &mut Dice, a: &'a Hull, b: &'a Hull) -> Scene<'a>
 }
 
 #[test]
-fn manifolds_full_of_nonsense() {
+fn manifolds_full_of_nonsense_do_no_harm() {
     let mut report = Report::new("nonsense in the manifold");
     let mut dice = Dice::new(5);
     let nonsense = [
@@ -438,7 +438,7 @@ fn nonsensical_manifold(n1: Vector, n2: Vector, points: u32) -> Manifold {
 
 /// New hulls with the same number of corners, so that the allocator hands out old addresses.
 #[test]
-fn replaced_shapes() {
+fn replaced_shapes_are_answered_as_they_are() {
     const CORNERS: usize = 24;
     let mut report = Report::new("replaced shapes");
     let mut dice = Dice::new(6);
@@ -506,7 +506,7 @@ fn scale_in_place(hull: &mut Hull, scale: Vector) {
 }
 
 #[test]
-fn shapes_mutated_in_place() {
+fn shapes_mutated_in_place_are_answered_as_they_are() {
     const CORNERS: usize = 30;
     let mut report = Report::new("shapes mutated in place");
     let mut dice = Dice::new(7);

@@ -28,7 +28,7 @@ fn the_tetrahedron_that_is_broken_below_is_sound() {
 }
 
 #[test]
-fn too_few_points() {
+fn too_few_points_are_refused() {
     let three = &corners()[..3];
     assert_eq!(
         Hull::from_points(three).unwrap_err(),
@@ -42,14 +42,14 @@ fn too_few_points() {
 }
 
 #[test]
-fn too_many_points() {
+fn too_many_points_are_refused() {
     let mut points = corners();
     points.resize(32_769, Vec3::ZERO);
     assert_eq!(refusal(points, &TETRAHEDRON), HullError::TooManyPoints);
 }
 
 #[test]
-fn coordinates_that_are_not_finite() {
+fn coordinates_that_are_not_finite_are_refused() {
     for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY] {
         for (i, axis) in [(0, 0), (2, 1), (3, 2)] {
             let mut points = corners();
@@ -62,7 +62,7 @@ fn coordinates_that_are_not_finite() {
 }
 
 #[test]
-fn points_without_volume() {
+fn points_without_volume_are_refused() {
     let plane: Vec<Vec3> = (0..30)
         .map(|i| Vec3::new((i % 6) as f32, (i / 6) as f32, 0.0))
         .collect();
@@ -98,7 +98,7 @@ fn points_without_volume() {
 }
 
 #[test]
-fn triangles_of_vertices_that_are_not_three() {
+fn triangles_of_vertices_that_are_not_three_are_refused() {
     for (i, bad) in [
         (0, [0, 2, 4]),
         (1, [0, 0, 3]),
@@ -112,14 +112,14 @@ fn triangles_of_vertices_that_are_not_three() {
 }
 
 #[test]
-fn vertices_that_belong_to_no_triangle() {
+fn vertices_that_belong_to_no_triangle_are_refused() {
     let mut points = corners();
     points.push(Vec3::splat(0.1));
     assert_eq!(refusal(points, &TETRAHEDRON), HullError::LooseVertex(4));
 }
 
 #[test]
-fn vertices_that_are_there_twice() {
+fn vertices_that_are_there_twice_are_refused() {
     // Each triangle with corners of its own, as mesh files have them.
     let soup: Vec<Vec3> = TETRAHEDRON
         .as_flattened()
@@ -139,7 +139,7 @@ fn vertices_that_are_there_twice() {
 }
 
 #[test]
-fn surfaces_that_are_open_or_doubled() {
+fn surfaces_that_are_open_or_doubled_are_refused() {
     let open = &TETRAHEDRON[..3];
     let mut doubled = TETRAHEDRON.to_vec();
     doubled.push(TETRAHEDRON[0]);
@@ -189,13 +189,13 @@ fn surfaces_that_are_open_or_doubled() {
 }
 
 #[test]
-fn surfaces_turned_inside_out() {
+fn surfaces_turned_inside_out_are_refused() {
     let inverted = TETRAHEDRON.map(|[a, b, c]| [a, c, b]);
     assert_eq!(refusal(corners(), &inverted), HullError::InsideOut);
 }
 
 #[test]
-fn surfaces_with_a_dent() {
+fn surfaces_with_a_dent_are_refused() {
     // A fifth vertex over the face (1, 2, 3), pushed through it.
     let raised = |height: f32| {
         let mut points = corners();

@@ -171,6 +171,19 @@ impl Question<'_> {
         Some(gap.dot(normal) / normal.length())
     }
 
+    /// How far the shapes are apart along the normal of a manifold. Without points it keeps an axis,
+    /// in the frame of whichever shape was the first to the kernels: what either reading separates
+    /// is apart.
+    fn separation_shown(&self, manifold: &ContactManifold) -> Option<f64> {
+        let normal = manifold.local_n1;
+        let separation = self.separation(normal)?;
+        if !manifold.points.is_empty() {
+            return Some(separation);
+        }
+        let mirrored = self.separation(-(self.pos12.rotation * normal))?;
+        Some(separation.max(mirrored))
+    }
+
     fn size(&self) -> f64 {
         let radii = self
             .shapes
@@ -198,7 +211,7 @@ impl Verified {
             return;
         }
         let reach = f64::from(question.prediction);
-        if let Some(separation) = question.separation(warm.local_n1) {
+        if let Some(separation) = question.separation_shown(&warm) {
             let error = (separation.min(reach) - distance).abs();
             raise(&mut self.along_normal, error / size);
         }

@@ -12,6 +12,11 @@
 //!   difference, and when the origin is at least `d` inside of all of its sides, so does the ball
 //!   of radius `d`; no direction has a smaller depth. *Globally*: no other face was looked at.
 
+mod polygon;
+mod verdict;
+
+pub(super) use verdict::{Seeds, Side, Verdict};
+
 use std::cmp::Ordering;
 
 use glam::DVec3;
@@ -23,6 +28,7 @@ use crate::pose::RelativePose;
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
 use crate::tolerance::PARALLEL_EDGES;
+use polygon::{crossing, pyramid_holds_ball, side_beyond};
 
 /// A part of a polytope's boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,74 +39,6 @@ pub enum Feature {
     Edge(u32),
     /// A face.
     Face(FaceId),
-}
-
-/// What a pair of features turned out to prove.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "lives for one call, on the stack"
-)]
-pub(super) enum Verdict {
-    /// The facet's plane separates the shapes by more than was asked about.
-    Apart(SeparatingAxis),
-    /// The facet's signed distance is that of the shapes.
-    Certified(Proximity),
-    /// The origin projects beyond this side of the facet: another one is nearest by now.
-    Beyond(Side),
-    /// The facet's plane, with this normal, cuts through the difference: this vertex is beyond it.
-    Cut(CsoVertex, DVec3),
-    /// The shapes overlap, perhaps less elsewhere. Points of the Minkowski difference around the
-    /// facet, to go on from, and the answer if the facet turns out to be the nearest.
-    Unproved(Seeds, Proximity),
-    /// These features do not span a facet.
-    NoPlane,
-}
-
-/// A side of a facet. In frame 1.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Side {
-    /// Its end points.
-    pub ends: [CsoVertex; 2],
-    /// The facet's normal, from shape 1 to shape 2.
-    pub normal: DVec3,
-    /// The unit direction in the facet's plane out of the facet.
-    pub outward: DVec3,
-}
-
-impl Side {
-    fn new(from: CsoVertex, to: CsoVertex, normal: DVec3) -> Self {
-        Self {
-            ends: [from, to],
-            normal,
-            outward: (to.w - from.w).cross(normal).normalize_or_zero(),
-        }
-    }
-}
-
-/// A few points of the Minkowski difference.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Seeds {
-    points: [CsoVertex; 5],
-    len: usize,
-}
-
-impl Seeds {
-    pub fn new(points: &[CsoVertex]) -> Self {
-        let mut seeds = Self::default();
-        points.iter().for_each(|point| seeds.push(*point));
-        seeds
-    }
-
-    pub fn as_slice(&self) -> &[CsoVertex] {
-        &self.points[..self.len]
-    }
-
-    pub fn push(&mut self, point: CsoVertex) {
-        if self.len < self.points.len() {
-            self.points[self.len] = point;
-            self.len += 1;
-        }
-    }
 }
 
 /// Re-evaluates the facet that `features` span.
@@ -260,7 +198,7 @@ impl Test {
         seeds.push(CsoVertex {
             w: apex,
             on_1: p.center(),
-            ids: seeds.points[0].ids,
+            ids: [p.face_vertex(face, 0), q_id],
         });
         Verdict::Unproved(seeds, certified)
     }
@@ -304,21 +242,7 @@ impl Test {
         if -normal.dot(offset) - signed_distance > self.tolerance {
             return Verdict::Cut(extreme, normal);
         }
-        // `along_1` then `-along_2` turn clockwise about `cross`.
-        let turn = if outward < 0.0 {
-            [0, 1, 2, 3]
-        } else {
-            [3, 2, 1, 0]
-        };
-        let vertices = turn.map(|i| {
-            let (a, b) = ([0, 1, 1, 0][i], [0, 0, 1, 1][i]);
-            let on_1 = [a0, a1][a];
-            CsoVertex {
-                w: on_1 - [b0, b1][b],
-                on_1,
-                ids: [ends_1[a], ends_2[b]],
-            }
-        });
+        let vertices = parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], outward > 0.0);
         let corner = |i: usize| vertices[i].w;
         if let Some(i) = side_beyond(4, corner, normal, self.tolerance) {
             return Verdict::Beyond(Side::new(vertices[i], vertices[(i + 1) % 4], normal));
@@ -336,18 +260,34 @@ impl Test {
         if signed_distance >= 0.0 || pyramid_holds_ball(4, corner, center, depth) {
             return Verdict::Certified(proximity);
         }
-        let mut seeds = Seeds::default();
-        vertices.iter().for_each(|vertex| seeds.push(*vertex));
-        seeds.push(center_seed(cso, extreme.ids));
+        let mut seeds = Seeds::new(&vertices);
+        seeds.push(CsoVertex {
+            w: center,
+            on_1: cso.shape_1.center(),
+            ids: extreme.ids,
+        });
         Verdict::Unproved(seeds, proximity)
     }
 }
 
-/// Where the lines `a + s along_1` and `b + t along_2`, `offset` being `a - b`, are nearest.
-fn crossing(offset: DVec3, along_1: DVec3, along_2: DVec3) -> [f64; 2] {
-    let cross = along_1.cross(along_2);
-    let area_squared = cross.length_squared();
-    [along_2, along_1].map(|along| -offset.dot(along.cross(cross)) / area_squared)
+/// The corners of the facet that two edges span, counter-clockwise seen from outside. `along`: the
+/// outward normal is along the cross product of their directions, not against it.
+fn parallelogram(
+    [edge_1, edge_2]: [[DVec3; 2]; 2],
+    [ends_1, ends_2]: [[VertexId; 2]; 2],
+    along: bool,
+) -> [CsoVertex; 4] {
+    // The first edge forwards, then the second backwards, turn clockwise about the cross product.
+    let turn = if along { [3, 2, 1, 0] } else { [0, 1, 2, 3] };
+    turn.map(|i| {
+        let (a, b) = ([0, 1, 1, 0][i], [0, 0, 1, 1][i]);
+        let on_1 = edge_1[a];
+        CsoVertex {
+            w: on_1 - edge_2[b],
+            on_1,
+            ids: [ends_1[a], ends_2[b]],
+        }
+    })
 }
 
 /// The witness points of a penetration depth, from its features where these determine them: a
@@ -388,110 +328,4 @@ fn edge_witnesses<A: Polytope, B: Polytope>(
     let [s, t] = crossing(a0 - b0, a1 - a0, b1 - b0);
     let on_edges = (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t);
     on_edges.then(|| [a0.lerp(a1, s), b0.lerp(b1, t)])
-}
-
-/// The centre of the Minkowski difference: inside, so that it never is a corner of the answer.
-/// `ids` only tell climbs where to start.
-pub(super) fn center_seed<A: Polytope, B: Polytope>(
-    cso: &Cso<'_, A, B>,
-    ids: [VertexId; 2],
-) -> CsoVertex {
-    CsoVertex {
-        w: cso.center(),
-        on_1: cso.shape_1.center(),
-        ids,
-    }
-}
-
-/// The side of a polygon, counter-clockwise about `normal`, beyond which the origin projects
-/// farthest, as the index of its first corner; `None` if it projects inside, up to `tolerance`.
-fn side_beyond(
-    count: usize,
-    corner: impl Fn(usize) -> DVec3,
-    normal: DVec3,
-    tolerance: f64,
-) -> Option<usize> {
-    let mut beyond = None;
-    let mut farthest = tolerance * tolerance;
-    let mut from = corner(count - 1);
-    for i in 0..count {
-        let to = corner(i);
-        let inward = normal.cross(to - from);
-        let height = -inward.dot(from);
-        from = to;
-        if height < 0.0 {
-            let squared = height * height / inward.length_squared();
-            if squared > farthest {
-                farthest = squared;
-                beyond = Some((i + count - 1) % count);
-            }
-        }
-    }
-    beyond
-}
-
-/// Whether the origin is at least `depth` inside of all side planes of the pyramid over a
-/// polygon, counter-clockwise seen from outside, whose apex is beneath it.
-fn pyramid_holds_ball(
-    count: usize,
-    corner: impl Fn(usize) -> DVec3,
-    apex: DVec3,
-    depth: f64,
-) -> bool {
-    let depth = depth.max(0.0);
-    let mut from = corner(count - 1);
-    (0..count).all(|i| {
-        let to = corner(i);
-        let inward = (to - from).cross(apex - from);
-        let height = -inward.dot(from);
-        from = to;
-        height >= 0.0 && height * height >= depth * depth * inward.length_squared()
-    })
-}
-
-impl Verdict {
-    /// From the frame of shape 2, with the shapes swapped, to frame 1.
-    fn mirrored(self, pose: &RelativePose) -> Self {
-        match self {
-            Self::Apart(apart) => Self::Apart(SeparatingAxis {
-                axis: -pose.direction_to_1(apart.axis),
-                separation: apart.separation,
-                ids: [apart.ids[1], apart.ids[0]],
-            }),
-            Self::Certified(proximity) => Self::Certified(mirrored_proximity(&proximity, pose)),
-            Self::Beyond(side) => Self::Beyond(Side {
-                ends: side.ends.map(|vertex| mirrored(&vertex, pose)),
-                normal: -pose.direction_to_1(side.normal),
-                outward: -pose.direction_to_1(side.outward),
-            }),
-            Self::Cut(vertex, normal) => {
-                Self::Cut(mirrored(&vertex, pose), -pose.direction_to_1(normal))
-            }
-            Self::Unproved(mut seeds, candidate) => {
-                for seed in &mut seeds.points[..seeds.len] {
-                    *seed = mirrored(seed, pose);
-                }
-                Self::Unproved(seeds, mirrored_proximity(&candidate, pose))
-            }
-            Self::NoPlane => Self::NoPlane,
-        }
-    }
-}
-
-fn mirrored(vertex: &CsoVertex, pose: &RelativePose) -> CsoVertex {
-    CsoVertex {
-        w: -pose.direction_to_1(vertex.w),
-        on_1: pose.point_to_1(vertex.on_2()),
-        ids: [vertex.ids[1], vertex.ids[0]],
-    }
-}
-
-fn mirrored_proximity(p: &Proximity, pose: &RelativePose) -> Proximity {
-    Proximity {
-        signed_distance: p.signed_distance,
-        normal: -pose.direction_to_1(p.normal),
-        on_1: pose.point_to_1(p.on_2),
-        on_2: pose.point_to_1(p.on_1),
-        features: [p.features[1], p.features[0]],
-    }
 }

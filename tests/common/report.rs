@@ -65,9 +65,10 @@ impl Report {
         }
     }
 
-    /// Prints the table, and fails if anything was wrong.
+    /// Prints the table, and fails if anything was wrong, or nothing was checked.
     pub fn conclude(&self) {
         println!("{self}");
+        assert!(!self.routes.is_empty(), "{}: nothing checked", self.title);
         let failures: usize = self.routes.values().map(|t| t.failures.len()).sum();
         assert_eq!(failures, 0, "{}: see the table above", self.title);
     }
