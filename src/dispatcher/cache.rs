@@ -97,16 +97,17 @@ pub(super) fn pack(feature: Feature) -> PackedFeatureId {
     })
 }
 
-/// Whether an old contact and a new one are between the same features. A vertex that moves on from
-/// one face to the next stays what it is.
+/// What an old contact and a new one between the same features have in common. A vertex that moves
+/// on from one face to the next stays what it is.
 #[inline]
-pub(super) fn is_same(old: [PackedFeatureId; 2], new: [PackedFeatureId; 2]) -> bool {
-    let kinds = |ids: [PackedFeatureId; 2]| ids.map(|id| id.0 & KIND);
-    match kinds(old) {
-        [VERTEX, FACE] => old[0] == new[0] && kinds(new) == [VERTEX, FACE],
-        [FACE, VERTEX] => old[1] == new[1] && kinds(new) == [FACE, VERTEX],
-        _ => old == new,
-    }
+pub(super) fn identity(ids: [PackedFeatureId; 2]) -> u64 {
+    let [a, b] = ids.map(|id| id.0);
+    let (a, b) = match (a & KIND, b & KIND) {
+        (VERTEX, FACE) => (a, FACE),
+        (FACE, VERTEX) => (FACE, b),
+        _ => (a, b),
+    };
+    u64::from(a) << 32 | u64::from(b)
 }
 
 #[inline]

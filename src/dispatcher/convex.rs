@@ -225,9 +225,14 @@ fn heirs<C>(old: &[TrackedContact<C>], new: &[Place]) -> [Option<usize>; manifol
     let old = &old[..old.len().min(MAX_OLD)];
     let mut heirs = [None; manifold::MAX_POINTS];
     let mut left = [true; MAX_OLD];
+    let mut identities = [0; MAX_OLD];
+    for (identity, old) in identities.iter_mut().zip(old) {
+        *identity = cache::identity([old.fid1, old.fid2]);
+    }
+    let identities = &identities[..old.len()];
     for (heir, new) in heirs.iter_mut().zip(new) {
-        let same = |old: &TrackedContact<C>| cache::is_same([old.fid1, old.fid2], new.ids);
-        if let Some(j) = old.iter().position(same) {
+        let sought = cache::identity(new.ids);
+        if let Some(j) = identities.iter().position(|&old| old == sought) {
             *heir = Some(j);
             left[j] = false;
         }
