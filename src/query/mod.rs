@@ -8,7 +8,8 @@
 //! 5. [`Stage::WarmGjk`]: incremental GJK from the previous axis and vertices.
 //! 6. [`Stage::WarmEpa`]: the depth, expanded from the previous features.
 //!
-//! Without a previous frame GJK and EPA start cold. A stale or wrong memory costs time, never
+//! A pair without a previous frame starts with the line of centres as its axis; GJK and EPA count
+//! as cold for it. A stale or wrong memory costs time, never
 //! accuracy: nothing is believed that is not re-evaluated at the present poses.
 
 mod corner;
