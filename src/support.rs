@@ -148,8 +148,14 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
     /// The extreme vertex from the centre towards the origin, where the shapes are nearest if they
     /// are round: the first vertex of a search that knows nothing.
     pub fn vertex_towards_origin(&self, cost: &mut Cost) -> CsoVertex {
-        let dir = (-self.center()).normalize_or(DVec3::X);
+        let dir = self.towards_origin();
         self.support(dir, self.start(dir), cost)
+    }
+
+    /// The unit direction from the centre to the origin, which is that from the centre of shape 1 to
+    /// that of shape 2; some direction where these coincide.
+    pub fn towards_origin(&self) -> DVec3 {
+        (-self.center()).normalize_or(DVec3::X)
     }
 
     /// A point inside, with its origins on the two shapes.

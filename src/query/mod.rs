@@ -102,7 +102,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
         match *memory {
             Memory::None => {
-                let axis = self.center_line();
+                let axis = self.cso.towards_origin();
                 self.follow_axis(axis, self.cso.start(axis), COLD)
             }
             Memory::Axis(axis, ids) => self.follow_axis(axis, self.valid_start(ids), WARM),
@@ -132,11 +132,6 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                 _ => self.cso.start(axis),
             },
         })
-    }
-
-    /// From the centre of shape 1 to that of shape 2; some direction where they coincide.
-    fn center_line(&self) -> DVec3 {
-        (-self.cso.center()).normalize_or(DVec3::X)
     }
 
     fn is_far_sighted(&self) -> bool {
