@@ -102,11 +102,15 @@ pub(super) fn pack(feature: Feature) -> PackedFeatureId {
 #[inline]
 pub(super) fn identity(ids: [PackedFeatureId; 2]) -> u64 {
     let [a, b] = ids.map(|id| id.0);
-    let (a, b) = match (a & KIND, b & KIND) {
-        (VERTEX, FACE) => (a, FACE),
-        (FACE, VERTEX) => (FACE, b),
-        _ => (a, b),
+    let vertex_and_face = (a ^ b) & KIND == VERTEX ^ FACE;
+    let unnamed = |id: u32| {
+        if vertex_and_face & (id & KIND == FACE) {
+            FACE
+        } else {
+            id
+        }
     };
+    let (a, b) = (unnamed(a), unnamed(b));
     u64::from(a) << 32 | u64::from(b)
 }
 

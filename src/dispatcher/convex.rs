@@ -1,7 +1,7 @@
 //! The contact manifold of two convex shapes, coherently.
 
 use glam::DVec3;
-use parry3d::math::{Pose, Real, Vector};
+use parry3d::math::{Pose, Real};
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
@@ -9,7 +9,7 @@ use parry3d::shape::PackedFeatureId;
 use super::pair::{PairVisitor, Scratch};
 use super::{cache, half_space};
 use crate::hull::Hull;
-use crate::manifold::{self, Contacts};
+use crate::manifold::{self, ContactPoint, Contacts, MAX_POINTS};
 use crate::pose::RelativePose;
 use crate::query::{Answer, Proximity, Query};
 use crate::stats::{Cost, SharedStats, Stage};
@@ -19,9 +19,6 @@ use crate::support::{Cso, Polytope};
 /// that the shapes do not meet. As parry does, such points are left out beyond this multiple of
 /// the uncorrected depth.
 const ABSURD_DEPTH: f64 = 5.0;
-
-/// Of another dispatcher's manifold no more points than these hand their data on.
-const MAX_OLD: usize = 8;
 
 /// Brings a manifold up to date.
 pub(super) struct UpdateManifold<'a, M, C> {
@@ -143,39 +140,6 @@ impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
     }
 }
 
-/// A tracked contact before it has data.
-#[derive(Clone, Copy)]
-struct Place {
-    points: [Vector; 2],
-    ids: [PackedFeatureId; 2],
-    distance: Real,
-}
-
-impl Place {
-    const NOWHERE: Self = Self {
-        points: [Vector::ZERO; 2],
-        ids: [PackedFeatureId::UNKNOWN; 2],
-        distance: 0.0,
-    };
-
-    fn put_into<C>(&self, contact: &mut TrackedContact<C>) {
-        [contact.local_p1, contact.local_p2] = self.points;
-        [contact.fid1, contact.fid2] = self.ids;
-        contact.dist = self.distance;
-    }
-
-    fn with<C>(&self, data: C) -> TrackedContact<C> {
-        TrackedContact {
-            local_p1: self.points[0],
-            local_p2: self.points[1],
-            dist: self.distance,
-            fid1: self.ids[0],
-            fid2: self.ids[1],
-            data,
-        }
-    }
-}
-
 /// Replaces the manifold's points, and hands the data (the solver's impulses) of the old ones on.
 fn write_points<M, C: Default + Copy>(
     manifold: &mut ContactManifold<M, C>,
@@ -186,59 +150,89 @@ fn write_points<M, C: Default + Copy>(
 ) {
     let normals = cache::ordered([manifold.local_n1, manifold.local_n2], swapped);
     let [n1, n2] = normals.map(|n| n.as_dvec3());
-    let contacts = contacts.as_slice();
-    let mut places = [Place::NOWHERE; manifold::MAX_POINTS];
-    for (place, contact) in places.iter_mut().zip(contacts) {
+    let ids = |contact: &ContactPoint| cache::ordered(contact.features.map(cache::pack), swapped);
+    let place = |contact: &ContactPoint| {
         let points = [
             contact.on_1 + n1 * borders[0],
             pose.point_to_2(contact.on_2) + n2 * borders[1],
         ];
-        place.points = cache::ordered(points.map(|p| p.as_vec3()), swapped);
-        place.ids = cache::ordered(contact.features.map(cache::pack), swapped);
-        place.distance = (contact.distance - borders[0] - borders[1]) as Real;
-    }
-    let places = &places[..contacts.len()];
+        let [local_p1, local_p2] = cache::ordered(points.map(|p| p.as_vec3()), swapped);
+        let [fid1, fid2] = ids(contact);
+        TrackedContact {
+            local_p1,
+            local_p2,
+            dist: (contact.distance - borders[0] - borders[1]) as Real,
+            fid1,
+            fid2,
+            data: (),
+        }
+    };
+    let contacts = contacts.as_slice();
     let tracked = &mut manifold.points;
-    let heirs = heirs(tracked, places);
-    let in_place = |(i, heir): (usize, &Option<usize>)| *heir == Some(i);
-    if tracked.len() == places.len() && heirs[..places.len()].iter().enumerate().all(in_place) {
-        // Copies of the data would cost more than all the rest.
-        for (contact, place) in tracked.iter_mut().zip(places) {
-            place.put_into(contact);
+    let old = Identities::of(tracked.iter().map(|contact| [contact.fid1, contact.fid2]));
+    let new = Identities::of(contacts.iter().map(ids));
+    if old == new && tracked.len() == contacts.len() {
+        for (tracked, place) in tracked.iter_mut().zip(contacts.iter().map(place)) {
+            // Copies of the data would cost more than all the rest.
+            tracked.local_p1 = place.local_p1;
+            tracked.local_p2 = place.local_p2;
+            tracked.dist = place.dist;
+            tracked.fid1 = place.fid1;
+            tracked.fid2 = place.fid2;
         }
         return;
     }
+    let places = contacts.iter().map(place);
+    let heirs = heirs(tracked, &old, places.clone(), &new);
     let data = heirs.map(|heir| heir.map_or_else(C::default, |j| tracked[j].data));
     tracked.clear();
-    tracked.extend(
-        places
-            .iter()
-            .zip(data)
-            .map(|(place, data)| place.with(data)),
-    );
+    tracked.extend(places.zip(data).map(|(place, data)| TrackedContact {
+        local_p1: place.local_p1,
+        local_p2: place.local_p2,
+        dist: place.dist,
+        fid1: place.fid1,
+        fid2: place.fid2,
+        data,
+    }));
+}
+
+/// What the first contacts of a manifold are between; see [`cache::identity`].
+#[derive(PartialEq)]
+struct Identities([u64; MAX_POINTS]);
+
+impl Identities {
+    fn of(contacts: impl Iterator<Item = [PackedFeatureId; 2]>) -> Self {
+        let mut identities = Self([0; MAX_POINTS]);
+        for (identity, ids) in identities.0.iter_mut().zip(contacts) {
+            *identity = cache::identity(ids);
+        }
+        identities
+    }
 }
 
 /// For each new contact the old one whose data it takes over: that between the same features. What
 /// is left over goes to the nearest of the others, however far: an impulse in a wrong place of the
 /// patch is a better start for the solver than a body that is borne by three contacts of four.
-fn heirs<C>(old: &[TrackedContact<C>], new: &[Place]) -> [Option<usize>; manifold::MAX_POINTS] {
-    let old = &old[..old.len().min(MAX_OLD)];
-    let mut heirs = [None; manifold::MAX_POINTS];
-    let mut left = [true; MAX_OLD];
-    let mut identities = [0; MAX_OLD];
-    for (identity, old) in identities.iter_mut().zip(old) {
-        *identity = cache::identity([old.fid1, old.fid2]);
-    }
-    let identities = &identities[..old.len()];
-    for (heir, new) in heirs.iter_mut().zip(new) {
-        let sought = cache::identity(new.ids);
-        if let Some(j) = identities.iter().position(|&old| old == sought) {
-            *heir = Some(j);
-            left[j] = false;
+/// (Of another dispatcher's manifold no more points than ours have hand their data on.)
+fn heirs<C>(
+    old: &[TrackedContact<C>],
+    old_ids: &Identities,
+    new: impl Iterator<Item = TrackedContact<()>>,
+    new_ids: &Identities,
+) -> [Option<usize>; MAX_POINTS] {
+    let old = &old[..old.len().min(MAX_POINTS)];
+    let mut heirs = [None; MAX_POINTS];
+    let mut left = [true; MAX_POINTS];
+    for (heir, sought) in heirs.iter_mut().zip(&new_ids.0) {
+        for j in 0..old.len() {
+            if old_ids.0[j] == *sought {
+                *heir = Some(j);
+                left[j] = false;
+            }
         }
     }
     for (heir, new) in heirs.iter_mut().zip(new).filter(|(heir, _)| heir.is_none()) {
-        let away = |j: &usize| old[*j].local_p1.distance_squared(new.points[0]);
+        let away = |j: &usize| old[*j].local_p1.distance_squared(new.local_p1);
         let others = (0..old.len()).filter(|j| left[*j]);
         *heir = others.min_by(|j, k| away(j).total_cmp(&away(k)));
         if let Some(j) = *heir {

@@ -170,14 +170,15 @@ impl Faces {
     /// Of these faces the one that looks most in direction `dir`.
     #[inline]
     pub fn most_aligned(&self, candidates: &[u16], dir: DVec3) -> FaceId {
-        let mut best = (f64::NEG_INFINITY, 0);
+        let (mut best, mut most) = (0, f64::NEG_INFINITY);
         for &face in candidates {
             let aligned = self.normal(face.into()).dot(dir);
-            if aligned > best.0 {
-                best = (aligned, face);
-            }
+            // Selections: which face it will be is not predictable.
+            let better = aligned > most;
+            most = if better { aligned } else { most };
+            best = if better { face } else { best };
         }
-        best.1.into()
+        best.into()
     }
 
     pub fn heap_bytes(&self) -> usize {

@@ -71,9 +71,16 @@ impl EdgeGraph {
         Some(low << PLACE_BITS | place as u32)
     }
 
+    /// Where `to` first occurs among the neighbours of `from`. All are looked at: where a search
+    /// would end is not predictable.
+    #[inline]
     fn place(&self, from: VertexId, to: VertexId) -> Option<usize> {
-        let mut around = self.neighbors(from).iter();
-        around.position(|&w| VertexId::from(w) == to)
+        let around = self.neighbors(from);
+        let mut place = around.len();
+        for (i, &w) in around.iter().enumerate().rev() {
+            place = if VertexId::from(w) == to { i } else { place };
+        }
+        (place < around.len()).then_some(place)
     }
 
     /// The end vertices of an edge.

@@ -6,7 +6,10 @@
 //! where sides cross, and which corners of the window are between two crossings. The corners come
 //! in no order, and where the polygons' corners meet there may be two for one.
 
+use std::array;
+
 use glam::DVec2;
+use wide::f64x4;
 
 /// Where a corner of the intersection comes from. Indices are into the polygons as given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,37 +48,97 @@ pub(super) struct Polygons {
     pub window: Vec<DVec2>,
     /// Clockwise, as a second shape's face is seen; perhaps only the two ends of a line.
     pub subject: Vec<DVec2>,
-    /// The corners of the intersection.
+    /// Room for the corners of the intersection.
     pub corners: Vec<ClipVertex>,
-    inside: Vec<bool>,
+    /// The subject in fours, the last one filled up with its last corner.
+    rows: Vec<Row>,
 }
 
-/// Leaves the intersection of window and subject in the corners. What lies outside by less than
-/// `slack` counts as inside, so that corners that meet up to rounding are never lost.
-pub(super) fn intersect(polygons: &mut Polygons, slack: f64) {
+/// Corners are looked at in fours: so many are computed at once, and most faces have no more.
+const LANES: usize = 4;
+const ALL: u32 = (1 << LANES) - 1;
+
+/// Some corners of the subject.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    x: f64x4,
+    y: f64x4,
+    /// A bit for each that is inside of all sides so far.
+    inside: u32,
+    /// A bit for each that is below the present side.
+    below: u32,
+}
+
+/// The corners of the intersection of window and subject. What lies outside by less than `slack`
+/// counts as inside, so that corners that meet up to rounding are never lost.
+///
+/// What is inside and what crosses is not predictable, and a branch that goes wrong costs more
+/// than all that a side computes. So corners are written where they would belong, and counted if
+/// they do.
+pub(super) fn intersect(polygons: &mut Polygons, slack: f64) -> &mut [ClipVertex] {
+    polygons.make_room();
     let Polygons {
         window,
         subject,
         corners,
-        inside,
+        rows,
     } = polygons;
-    corners.clear();
-    inside.clear();
-    inside.extend(subject.iter().map(|_| true));
-    let ends = window.iter().cycle().skip(1);
-    for (i, (&from, &to)) in window.iter().zip(ends).enumerate() {
-        let side = Side::new(from, to, slack);
-        side.cut(i as u16, subject, inside, corners);
+    let mut found = Appender {
+        room: corners,
+        len: 0,
+    };
+    for (i, &from) in window.iter().enumerate() {
+        let to = window[if i + 1 < window.len() { i + 1 } else { 0 }];
+        Side::new(i as u16, from, to, slack).cut(subject, rows, &mut found);
     }
-    for (j, (&at, &inside)) in subject.iter().zip(&*inside).enumerate() {
-        if inside {
-            corners.push(ClipVertex::new(at, Tag::Corner(j as u16)));
+    for (j, &at) in subject.iter().enumerate() {
+        let inside = rows[j / LANES].inside >> (j % LANES) & 1 == 1;
+        found.push_if(inside, ClipVertex::new(at, Tag::Corner(j as u16)));
+    }
+    let count = found.len;
+    &mut corners[..count]
+}
+
+impl Polygons {
+    fn make_room(&mut self) {
+        let (sides, count) = (self.window.len(), self.subject.len());
+        self.rows.clear();
+        self.rows.extend(self.subject.chunks(LANES).map(|chunk| {
+            let corners: [DVec2; LANES] = array::from_fn(|i| chunk[i.min(chunk.len() - 1)]);
+            Row {
+                x: corners.map(|corner| corner.x).into(),
+                y: corners.map(|corner| corner.y).into(),
+                inside: ALL,
+                below: 0,
+            }
+        }));
+        // Of each side its start, and crossings with at most all sides of the subject; and one
+        // place to write to in vain.
+        let most = sides * (count + 1) + count + 1;
+        if self.corners.len() < most {
+            let nothing = ClipVertex::new(DVec2::ZERO, Tag::Corner(0));
+            self.corners.resize(most, nothing);
         }
+    }
+}
+
+/// Writes corners one after the other.
+struct Appender<'a> {
+    room: &'a mut [ClipVertex],
+    len: usize,
+}
+
+impl Appender<'_> {
+    #[inline]
+    fn push_if(&mut self, wanted: bool, corner: ClipVertex) {
+        self.room[self.len] = corner;
+        self.len += usize::from(wanted);
     }
 }
 
 /// A side of the window.
 struct Side {
+    index: u16,
     from: DVec2,
     along: DVec2,
     length_squared: f64,
@@ -84,11 +147,12 @@ struct Side {
 }
 
 impl Side {
-    fn new(from: DVec2, to: DVec2, slack: f64) -> Self {
+    fn new(index: u16, from: DVec2, to: DVec2, slack: f64) -> Self {
         let along = to - from;
         // Heights are multiplied by the length; the sum of coordinates is not shorter.
         let length = along.x.abs() + along.y.abs();
         Self {
+            index,
             from,
             along,
             length_squared: along.length_squared(),
@@ -103,42 +167,46 @@ impl Side {
         DVec2::new(self.along.dot(from), self.along.perp_dot(from))
     }
 
-    /// Strikes the subject's corners below this side from `inside`, and adds what the `i`-th
-    /// side has of the intersection's corners.
-    fn cut(&self, i: u16, subject: &[DVec2], inside: &mut [bool], corners: &mut Vec<ClipVertex>) {
+    /// Strikes the subject's corners below this side from those inside, and adds what the side has
+    /// of the intersection's corners.
+    fn cut(&self, subject: &[DVec2], rows: &mut [Row], found: &mut Appender<'_>) {
+        for row in &mut *rows {
+            // As `place` computes them.
+            let (x, y) = (row.x - self.from.x, row.y - self.from.y);
+            let heights = y * self.along.x - x * self.along.y;
+            row.inside &= !heights.simd_lt(f64x4::splat(-self.slack)).to_bitmask();
+            row.below = heights.simd_lt(f64x4::ZERO).to_bitmask();
+        }
         // Whether the line enters or leaves the subject before the side's start, and after it.
         let (mut before, mut after) = (false, false);
         // A line of two corners has no side back.
-        let mut j = if subject.len() == 2 {
+        let mut last = if subject.len() == 2 {
             0
         } else {
             subject.len() - 1
         };
-        let mut last = self.place(subject[j]);
-        for (next, (&corner, inside)) in subject.iter().zip(inside).enumerate() {
-            let place = self.place(corner);
-            *inside &= place.y >= -self.slack;
-            if (place.y < 0.0) != (last.y < 0.0) {
-                // Where the line is crossed, as a fraction: no division for what is not needed.
-                let fall = last.y - place.y;
-                let (share, whole) = (
-                    (last.y * place.x - place.y * last.x) * fall.signum(),
-                    fall.abs(),
-                );
-                before |= share <= 0.0;
-                after |= share >= 0.0;
-                if share >= -self.slack * whole
-                    && share <= (self.length_squared + self.slack) * whole
-                {
-                    let at = subject[j].lerp(corner, last.y / fall);
-                    corners.push(ClipVertex::new(at, Tag::Crossing(i, j as u16)));
-                }
+        let mut last_below = rows[last / LANES].below >> (last % LANES) & 1;
+        for (r, row) in rows.iter().enumerate() {
+            let mut crosses = ((row.below << 1 | last_below) ^ row.below) & ALL;
+            while crosses != 0 {
+                let to = r * LANES + crosses.trailing_zeros() as usize;
+                let from = if to == r * LANES { last } else { to - 1 };
+                crosses &= crosses - 1;
+                let ends = [self.place(subject[from]), self.place(subject[to])];
+                let share = ends[0].y / (ends[0].y - ends[1].y);
+                let place = ends[0].x + (ends[1].x - ends[0].x) * share;
+                before |= place <= 0.0;
+                after |= place >= 0.0;
+                let on_side = (place >= -self.slack) & (place <= self.length_squared + self.slack);
+                let at = subject[from].lerp(subject[to], share);
+                let tag = Tag::Crossing(self.index, from as u16);
+                found.push_if(on_side, ClipVertex::new(at, tag));
             }
-            (last, j) = (place, next);
+            last = r * LANES + LANES - 1;
+            last_below = row.below >> (LANES - 1);
         }
-        if before && after {
-            corners.push(ClipVertex::new(self.from, Tag::Window(i)));
-        }
+        let start = ClipVertex::new(self.from, Tag::Window(self.index));
+        found.push_if(before & after, start);
     }
 }
 
@@ -156,8 +224,7 @@ mod tests {
             subject: polygon.iter().rev().copied().collect(),
             ..Default::default()
         };
-        intersect(&mut polygons, SLACK);
-        polygons.corners
+        intersect(&mut polygons, SLACK).to_vec()
     }
 
     fn clip_square(polygon: [[f64; 2]; 4]) -> Vec<(DVec2, Tag)> {
@@ -200,9 +267,9 @@ mod tests {
                 subject: line.map(DVec2::from).into(),
                 ..Default::default()
             };
-            intersect(&mut polygons, SLACK);
-            let corners = polygons.corners.iter();
+            let corners = intersect(&mut polygons, SLACK);
             corners
+                .iter()
                 .map(|v| (v.at.to_array(), v.tag))
                 .collect::<Vec<_>>()
         };

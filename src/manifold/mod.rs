@@ -140,7 +140,7 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
         let scale = cso.smaller_radius();
         let corners = patch.clip(cso, polygons, CLIP_SLACK * scale);
         patch.measure(corners, f64::NEG_INFINITY);
-        corners.retain(|corner| (range[0]..=range[1]).contains(&corner.distance));
+        let corners = reduce::keep(corners, |c| (range[0]..=range[1]).contains(&c.distance));
         if let Some(deepest) = reduce::deepest(corners) {
             contacts.push(patch.contact(cso, deepest));
             for corner in reduce::spread(corners, deepest.at, SAME_POINT * scale) {

@@ -132,7 +132,7 @@ impl<'s> Patch<'s> {
         cso: &Cso<'_, A, B>,
         polygons: &'p mut Polygons,
         slack: f64,
-    ) -> &'p mut Vec<ClipVertex> {
+    ) -> &'p mut [ClipVertex] {
         let [f1, f2] = self.polygons();
         let corner_1 = |i| cso.shape_1.vertex(cso.shape_1.face_vertex(f1, i));
         let corner_2 = |i| cso.shape_2.vertex(cso.shape_2.face_vertex(f2, i));
@@ -145,8 +145,7 @@ impl<'s> Patch<'s> {
         polygons
             .subject
             .extend((0..cso.shape_2.face_len(f2)).map(|i| frame_2.flatten(corner_2(i))));
-        clip::intersect(polygons, slack);
-        &mut polygons.corners
+        clip::intersect(polygons, slack)
     }
 
     /// Fills in the distances of `corners`, none of which is below `least`.

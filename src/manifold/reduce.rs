@@ -10,18 +10,30 @@ pub(super) fn split(
     corners: &mut [ClipVertex],
     max_distance: f64,
 ) -> (&[ClipVertex], &[ClipVertex]) {
-    let mut near = 0;
-    for i in 0..corners.len() {
-        if corners[i].distance <= max_distance {
-            if near < i {
-                corners.swap(near, i);
-            }
-            near += 1;
-        }
-    }
+    let near = partition(corners, |corner| corner.distance <= max_distance);
     let (near, beyond) = corners.split_at_mut(near);
     beyond.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance));
     (near, beyond)
+}
+
+/// The wanted corners, in their order.
+pub(super) fn keep(
+    corners: &mut [ClipVertex],
+    wanted: impl Fn(&ClipVertex) -> bool,
+) -> &[ClipVertex] {
+    let count = partition(corners, wanted);
+    &corners[..count]
+}
+
+/// Brings the wanted corners to the front, in their order, and counts them.
+fn partition(corners: &mut [ClipVertex], wanted: impl Fn(&ClipVertex) -> bool) -> usize {
+    let mut count = 0;
+    for i in 0..corners.len() {
+        let is_wanted = wanted(&corners[i]);
+        corners.swap(count, i);
+        count += usize::from(is_wanted);
+    }
+    count
 }
 
 /// The corner where the faces are nearest or overlap most.

@@ -62,7 +62,10 @@ pub(super) fn around<A: Polytope, B: Polytope>(
         let along = corner_2 - cso.shape_2.vertex(neighbor);
         first.meet(seen, along, [id_1, neighbor]);
     }
-    let ids = first.to?;
+    if first.tangent == f64::INFINITY {
+        return None;
+    }
+    let ids = first.to;
     let normal = (normal + sideways * first.tangent).normalize();
     let on_1 = cso.shape_1.vertex(ids[0]);
     let end = CsoVertex {
@@ -82,15 +85,15 @@ pub(super) fn around<A: Polytope, B: Polytope>(
 /// The least turn of a normal that meets an edge.
 struct Turn {
     tangent: f64,
-    /// The vertices at the edge's other end.
-    to: Option<[VertexId; 2]>,
+    /// The vertices at the edge's other end, if one is met.
+    to: [VertexId; 2],
 }
 
 impl Default for Turn {
     fn default() -> Self {
         Self {
             tangent: f64::INFINITY,
-            to: None,
+            to: [0; 2],
         }
     }
 }
@@ -100,10 +103,11 @@ impl Turn {
     #[inline]
     fn meet(&mut self, [normal, sideways]: [DVec3; 2], along: DVec3, to: [VertexId; 2]) {
         let (below, rise) = (normal.dot(along).min(0.0), sideways.dot(along));
-        if rise > 0.0 && -below < self.tangent * rise {
-            self.tangent = -below / rise;
-            self.to = Some(to);
-        }
+        // Selections: which edge is the first so far is not predictable.
+        let tangent = -below / rise;
+        let is_less = (rise > 0.0) & (tangent < self.tangent);
+        self.tangent = if is_less { tangent } else { self.tangent };
+        self.to = if is_less { to } else { self.to };
     }
 }
 
@@ -134,22 +138,21 @@ impl Ridge {
         let corner = q.vertex(self.vertex);
         // The way from the one normal to the other goes from 0 to 1.
         let mut nearest = 1.0;
-        let mut level = None;
+        let mut level = self.vertex;
         for neighbor in q.neighbors(self.vertex) {
             let along = q.vertex(neighbor) - corner;
             let (below, above) = (first.dot(along).min(0.0), last.dot(along));
             // The edge rises on the way, and before the nearest one so far.
-            if above > 0.0 && -below < nearest * (above - below) {
-                nearest = -below / (above - below);
-                level = Some(neighbor);
-            }
+            let way = -below / (above - below);
+            let is_nearer = (above > 0.0) & (way < nearest);
+            nearest = if is_nearer { way } else { nearest };
+            level = if is_nearer { neighbor } else { level };
         }
-        Some(match level {
-            None => [Feature::Face(face), Feature::Vertex(self.vertex)],
-            Some(neighbor) => [
-                Feature::Edge(edge),
-                Feature::Edge(q.edge_id(self.vertex, neighbor)?),
-            ],
+        Some(if level == self.vertex {
+            [Feature::Face(face), Feature::Vertex(self.vertex)]
+        } else {
+            let level = q.edge_id(self.vertex, level)?;
+            [Feature::Edge(edge), Feature::Edge(level)]
         })
     }
 }
