@@ -1,4 +1,5 @@
-//! Composite shapes: parry's routines take them apart, and ask *us* about the parts.
+//! Composite shapes: they are taken apart by our routines where hulls are involved, by parry's
+//! otherwise, and *we* are asked about the parts.
 //!
 //! Parry's own dispatcher hands itself to those routines, so that a dispatcher chained in front
 //! of it never sees the hulls inside of compounds, meshes, height fields and voxels.
@@ -15,11 +16,11 @@ use parry3d::query::details::{
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Shape, ShapeType};
 
-use super::{compound, pair};
+use super::{IsaGjkDispatcher, compound, mesh, pair};
 
 /// Updates the manifolds of a pair in which a shape has parts. `false` if none has.
 pub(super) fn contact_manifolds<M, C>(
-    dispatcher: &dyn PersistentQueryDispatcher<M, C>,
+    dispatcher: &IsaGjkDispatcher,
     pos12: &Pose,
     shapes: [&dyn Shape; 2],
     prediction: Real,
@@ -34,7 +35,9 @@ where
     // Parry's routines assert that boxes are not loosened by less than nothing.
     let prediction = prediction.max(0.0);
     let [s1, s2] = shapes;
-    if compound_with_hull(dispatcher, pos12, shapes, prediction, manifolds, workspace) {
+    if compound_with_hull(dispatcher, pos12, shapes, prediction, manifolds, workspace)
+        || mesh::contact_manifolds(dispatcher, pos12, shapes, prediction, manifolds, workspace)
+    {
         return true;
     }
     let composites = [s1.as_composite_shape(), s2.as_composite_shape()];
@@ -116,7 +119,7 @@ pub(super) fn keep_one<M: Default + Clone, C: Default + Copy>(
 
 /// A compound with a hull against another compound or a convex shape. `false` for other pairs.
 fn compound_with_hull<M, C>(
-    dispatcher: &dyn PersistentQueryDispatcher<M, C>,
+    dispatcher: &IsaGjkDispatcher,
     pos12: &Pose,
     [s1, s2]: [&dyn Shape; 2],
     prediction: Real,

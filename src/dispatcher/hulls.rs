@@ -29,6 +29,8 @@ pub(super) struct HullTable {
     slots: Vec<Slot>,
     bytes: usize,
     sweep_at: usize,
+    /// How often references have ended.
+    sweeps: u64,
     clock: u64,
 }
 
@@ -84,12 +86,24 @@ fn same_points(a: &[Vec3], b: &[Vec3]) -> bool {
 #[derive(Clone, Copy)]
 pub(super) struct HullRef(usize);
 
+/// The last polyhedron whose hull was proved, and which cannot have changed since: it is borrowed.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Proved<'a>(Option<Proof<'a>>);
+
+#[derive(Clone, Copy)]
+struct Proof<'a> {
+    polyhedron: &'a ConvexPolyhedron,
+    place: HullRef,
+    sweeps: u64,
+}
+
 impl HullTable {
     /// Drops what seems unused, if the table has grown a lot. References end here.
     pub fn make_room(&mut self) {
         if self.bytes <= self.sweep_at.max(KEEP_BYTES) {
             return;
         }
+        self.sweeps += 1;
         let oldest = self.clock.saturating_sub(STALE_AFTER);
         self.slots.retain(|slot| slot.last_use >= oldest);
         self.entries.clear();
@@ -101,9 +115,31 @@ impl HullTable {
         self.sweep_at = 2 * self.bytes;
     }
 
+    /// The hull of a polyhedron, without another proof if it is the one that was proved last.
+    #[inline]
+    pub fn find_proved<'a>(
+        &mut self,
+        polyhedron: &'a ConvexPolyhedron,
+        proved: &mut Proved<'a>,
+    ) -> Option<HullRef> {
+        if let Some(proof) = proved.0
+            && std::ptr::eq(proof.polyhedron, polyhedron)
+            && proof.sweeps == self.sweeps
+        {
+            return Some(proof.place);
+        }
+        let place = self.find(polyhedron)?;
+        *proved = Proved(Some(Proof {
+            polyhedron,
+            place,
+            sweeps: self.sweeps,
+        }));
+        Some(place)
+    }
+
     /// The hull of a polyhedron, built if it is new; `None` if it has none.
     #[inline]
-    pub fn find(&mut self, polyhedron: &ConvexPolyhedron) -> Option<HullRef> {
+    fn find(&mut self, polyhedron: &ConvexPolyhedron) -> Option<HullRef> {
         self.clock += 1;
         let points = polyhedron.points();
         let address = points.as_ptr() as Address;

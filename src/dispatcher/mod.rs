@@ -4,12 +4,16 @@ mod cache;
 mod cast;
 mod composite;
 mod compound;
+mod constraints;
 mod convex;
 mod half_space;
 mod hulls;
+mod mesh;
 mod pair;
 mod parts;
+mod points;
 mod scene;
+mod sub_pairs;
 
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints, ShapeCastOptions};
@@ -20,7 +24,10 @@ use parry3d::query::{
 };
 use parry3d::shape::Shape;
 
+use constraints::Constraints;
 use convex::UpdateManifold;
+use hulls::Proved;
+use pair::Side;
 use parts::Mover;
 
 use crate::stats::{SharedStats, Stats};
@@ -179,24 +186,51 @@ where
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported> {
+        let side_1 = Side {
+            shape: g1,
+            proved: &mut Proved::default(),
+        };
+        let side_2 = Side {
+            shape: g2,
+            proved: &mut Proved::default(),
+        };
+        let constraints = [normal_constraints1, normal_constraints2].map(Constraints::given);
+        self.update_manifold(pos12, side_1, side_2, constraints, prediction, manifold)
+    }
+}
+
+impl IsaGjkDispatcher {
+    /// Brings the manifold of two convex shapes up to date.
+    #[inline]
+    fn update_manifold<M, C>(
+        &self,
+        pos12: &Pose,
+        side_1: Side<'_, '_>,
+        side_2: Side<'_, '_>,
+        constraints: [Constraints<'_>; 2],
+        prediction: Real,
+        manifold: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported>
+    where
+        M: Default + Clone + Send + Sync,
+        C: Default + Copy + Send + Sync,
+    {
+        let (g1, g2) = (side_1.shape, side_2.shape);
         let update = UpdateManifold {
             pos12,
             prediction,
-            constraints: [normal_constraints1, normal_constraints2],
+            constraints,
             manifold,
             stats: &self.stats,
         };
-        if let Some(Some(())) = pair::visit(g1, g2, update) {
+        if let Some(Some(())) = pair::visit_sides(side_1, side_2, update) {
             return Ok(());
         }
-        DEFAULT.contact_manifold_convex_convex(
-            pos12,
-            g1,
-            g2,
-            normal_constraints1,
-            normal_constraints2,
-            prediction,
-            manifold,
-        )
+        let [c1, c2] = constraints;
+        c1.with(|c1| {
+            c2.with(|c2| {
+                DEFAULT.contact_manifold_convex_convex(pos12, g1, g2, c1, c2, prediction, manifold)
+            })
+        })
     }
 }

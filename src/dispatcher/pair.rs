@@ -7,7 +7,7 @@ use parry3d::math::Real;
 use parry3d::shape::{Segment as ParrySegment, Shape, ShapeType, Triangle};
 
 use super::cache;
-use super::hulls::{HullRef, HullTable};
+use super::hulls::{HullRef, HullTable, Proved};
 use crate::epa::EpaScratch;
 use crate::hull::Hull;
 use crate::hull_shape::HullShape;
@@ -108,6 +108,12 @@ pub(super) fn are_hulls(shape_1: &dyn Shape, shape_2: &dyn Shape) -> bool {
         .all(|shape| is_hull(shape, shape.shape_type()))
 }
 
+/// A shape of a pair, and what is known of it from the pairs before, if these are the parts of one.
+pub(super) struct Side<'a, 'p> {
+    pub shape: &'a dyn Shape,
+    pub proved: &'p mut Proved<'a>,
+}
+
 /// Visits the pair if one of its shapes is a hull and the other one known; else `None`.
 #[inline]
 pub(super) fn visit<V: PairVisitor>(
@@ -115,14 +121,32 @@ pub(super) fn visit<V: PairVisitor>(
     shape_2: &dyn Shape,
     visitor: V,
 ) -> Option<V::Output> {
-    let types = [shape_1.shape_type(), shape_2.shape_type()];
-    if !is_hull(shape_1, types[0]) && !is_hull(shape_2, types[1]) {
+    let side_1 = Side {
+        shape: shape_1,
+        proved: &mut Proved::default(),
+    };
+    let side_2 = Side {
+        shape: shape_2,
+        proved: &mut Proved::default(),
+    };
+    visit_sides(side_1, side_2, visitor)
+}
+
+/// As [`visit`], for pairs of parts.
+#[inline]
+pub(super) fn visit_sides<V: PairVisitor>(
+    side_1: Side<'_, '_>,
+    side_2: Side<'_, '_>,
+    visitor: V,
+) -> Option<V::Output> {
+    let types = [side_1.shape.shape_type(), side_2.shape.shape_type()];
+    if !is_hull(side_1.shape, types[0]) && !is_hull(side_2.shape, types[1]) {
         return None;
     }
     WORKBENCH.with_borrow_mut(|bench| {
         bench.hulls.make_room();
-        let solid_1 = solid(shape_1, types[0], &mut bench.hulls)?;
-        let solid_2 = solid(shape_2, types[1], &mut bench.hulls)?;
+        let solid_1 = solid(side_1, types[0], &mut bench.hulls)?;
+        let solid_2 = solid(side_2, types[1], &mut bench.hulls)?;
         let hulls = [&solid_1, &solid_2].map(|solid| solid.core.hull(&bench.hulls));
         let (hull, other, swapped) = match hulls {
             [Some(hull), _] => (hull, &solid_2, false),
@@ -151,19 +175,20 @@ pub(super) fn visit<V: PairVisitor>(
 }
 
 fn solid<'a>(
-    shape: &'a dyn Shape,
+    Side { shape, proved }: Side<'a, '_>,
     shape_type: ShapeType,
     hulls: &mut HullTable,
 ) -> Option<Solid<'a>> {
     let (core, border) = match shape_type {
         ShapeType::Custom => (Core::Hull(shape.as_shape::<HullShape>()?.hull()), 0.0),
         ShapeType::ConvexPolyhedron => {
-            (Core::Found(hulls.find(shape.as_convex_polyhedron()?)?), 0.0)
+            let polyhedron = shape.as_convex_polyhedron()?;
+            (Core::Found(hulls.find_proved(polyhedron, proved)?), 0.0)
         }
         ShapeType::RoundConvexPolyhedron => {
             let round = shape.as_round_convex_polyhedron()?;
             (
-                Core::Found(hulls.find(&round.inner_shape)?),
+                Core::Found(hulls.find_proved(&round.inner_shape, proved)?),
                 round.border_radius,
             )
         }

@@ -20,15 +20,12 @@ impl TrianglePolytope {
         let [a, b, c] = vertices;
         let normal = (b - a).cross(c - a).try_normalize()?;
         let center = (a + b + c) / 3.0;
-        let radius = vertices
-            .iter()
-            .map(|v| v.distance(center))
-            .fold(0.0, f64::max);
+        let [a, b, c] = vertices.map(|v| v.distance_squared(center));
         Some(Self {
             vertices,
             normal,
             center,
-            radius,
+            radius: a.max(b).max(c).sqrt(),
         })
     }
 }
