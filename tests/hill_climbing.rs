@@ -40,7 +40,7 @@ fn the_plain_climb_is_trapped_in_the_middle_of_an_edge() {
 }
 
 fn neighbors(hull: &Hull) -> impl Fn(usize) -> Vec<usize> + '_ {
-    |v| hull.neighbors(v as u32).map(|(w, _)| w as usize).collect()
+    |v| hull.neighbors(v as u32).map(|w| w as usize).collect()
 }
 
 /// Vertices far from the top in some direction, with all neighbours exactly as high as they are.
@@ -53,7 +53,7 @@ fn traps(hull: &Hull) -> Vec<(u32, DVec3)> {
             if level > scan(hull, down) - 0.1 * hull.radius() {
                 continue;
             }
-            if hull.neighbors(v).all(|(_, at)| down.dot(at) == level) {
+            if hull.neighbors(v).all(|w| down.dot(hull.vertex(w)) == level) {
                 traps.push((v, down));
             }
         }
@@ -170,9 +170,7 @@ fn adversarial_directions(hull: &Hull, dice: &mut Dice, most: usize) -> Vec<DVec
     for _ in 0..most {
         let v = dice.count(0, hull.points().len() - 1) as u32;
         let around: Vec<_> = hull.neighbors(v).collect();
-        let (neighbor, at) = around[dice.count(0, around.len() - 1)];
-        assert_eq!(at, hull.vertex(neighbor));
-        let edge = at - hull.vertex(v);
+        let edge = hull.vertex(around[dice.count(0, around.len() - 1)]) - hull.vertex(v);
         exact.extend([
             edge,
             edge.cross(dice.direction()),
@@ -199,7 +197,6 @@ fn adversarial_starts(hull: &Hull, dir: DVec3, dice: &mut Dice) -> Vec<u32> {
     let (_, lowest) = hull.support(-dir, hull.start(-dir), &mut Cost::default());
     let random = (0..8).map(|_| dice.count(0, count - 1) as u32);
     hull.neighbors(lowest)
-        .map(|(neighbor, _)| neighbor)
         .chain([lowest, hull.start(dir)])
         .chain(random)
         .collect()

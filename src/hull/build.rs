@@ -61,7 +61,7 @@ impl Hull {
         require_single_layer(&exact, triangles, center, radius)?;
 
         let (mut faces, face_of) = Faces::new(&exact, &surface, radius);
-        let graph = EdgeGraph::new(&points, &surface, &face_of);
+        let graph = EdgeGraph::new(&surface, &face_of);
         faces.add_caps(&exact, &graph);
         let face_len = |f: u16| faces.polygon(f.into()).len();
         let fragile = climb::fragile(&exact, &graph, radius, face_len);

@@ -124,7 +124,10 @@ fn bays(faces: &Faces, graph: &EdgeGraph, members: &[u16], outline: &[u16]) -> V
     let corners = members.iter().flat_map(|&face| faces.polygon(face.into()));
     let inside = corners.filter(|vertex| !outline.contains(vertex));
     let around = inside.flat_map(|&vertex| graph.faces_at(vertex.into()));
-    let mut bays: Vec<u16> = around.filter(|face| !members.contains(face)).collect();
+    let mut bays: Vec<u16> = around
+        .copied()
+        .filter(|face| !members.contains(face))
+        .collect();
     bays.sort_unstable();
     bays.dedup();
     bays

@@ -21,7 +21,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::graph::EdgeGraph;
+use super::graph::{EdgeGraph, LANES};
 use crate::stats::Cost;
 use crate::support::VertexId;
 use crate::tolerance::{LARGE_FACE, PLATEAU, SHORT_EDGE};
@@ -90,7 +90,8 @@ impl Slope<'_> {
         let mut best = at;
         let mut top = f64::NEG_INFINITY;
         for row in self.graph.rows(at) {
-            for (&w, d) in row.to.iter().zip(row.heights(dir)) {
+            let values: [f64; LANES] = row.map(|w| self.height(dir, w.into()));
+            for (&w, d) in row.iter().zip(values) {
                 let better = d > value;
                 best = if better { w.into() } else { best };
                 value = if better { d } else { value };
@@ -109,13 +110,13 @@ impl Slope<'_> {
         let mut plateau = vec![start];
         let mut next = 0;
         while let Some(&v) = plateau.get(next) {
-            for (w, point) in self.graph.neighbors(v) {
-                let height = dir.dot(point);
+            for &w in self.graph.neighbors(v) {
+                let height = self.height(dir, w.into());
                 if height > level + tie {
-                    return Some(w);
+                    return Some(w.into());
                 }
-                if height >= level - tie && !plateau.contains(&w) {
-                    plateau.push(w);
+                if height >= level - tie && !plateau.contains(&w.into()) {
+                    plateau.push(w.into());
                 }
             }
             next += 1;
@@ -135,14 +136,15 @@ pub(super) fn fragile(
     let shortest = SHORT_EDGE * radius;
     (0..points.len() as VertexId)
         .map(|v| {
-            let here = points[v as usize];
-            let mut around = graph.neighbors(v);
-            let short = around.any(|(_, p)| here.distance_squared(p) < shortest * shortest);
-            let first = graph.faces_at(v).next();
-            let mut others = graph.faces_at(v).filter(|&f| Some(f) != first);
+            let to = |w: u16| points[v as usize].distance_squared(points[w as usize]);
+            let mut around = graph.neighbors(v).iter();
+            let short = around.any(|&w| to(w) < shortest * shortest);
+            let faces = graph.faces_at(v);
+            let first = faces[0];
+            let mut others = faces.iter().filter(|&&f| f != first);
             let second = others.next();
             let corner = others.any(|f| Some(f) != second);
-            short || !corner || graph.faces_at(v).any(|f| face_len(f) >= LARGE_FACE)
+            short || !corner || faces.iter().any(|&f| face_len(f) >= LARGE_FACE)
         })
         .collect()
 }

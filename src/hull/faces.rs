@@ -169,9 +169,9 @@ impl Faces {
 
     /// Of these faces the one that looks most in direction `dir`.
     #[inline]
-    pub fn most_aligned(&self, candidates: impl IntoIterator<Item = u16>, dir: DVec3) -> FaceId {
+    pub fn most_aligned(&self, candidates: &[u16], dir: DVec3) -> FaceId {
         let (mut best, mut most) = (0, f64::NEG_INFINITY);
-        for face in candidates {
+        for &face in candidates {
             let aligned = self.normal(face.into()).dot(dir);
             // Selections: which face it will be is not predictable.
             let better = aligned > most;

@@ -2,9 +2,6 @@
 
 use std::array;
 
-use glam::{DVec3, Vec3};
-use wide::f64x4;
-
 use super::surface::{HalfEdge, Side, Surface, triangle};
 use crate::support::{FaceId, VertexId};
 
@@ -15,85 +12,56 @@ pub(super) const LANES: usize = 4;
 /// row. With at most 2^15 vertices the name has 30 bits, as parry's packed feature ids do.
 const PLACE_BITS: u32 = 15;
 
-/// All that a query asks about four neighbours of a vertex, on one line of the cache. In a world of
-/// many different hulls none of them is in the near caches, and a query costs what it fetches.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-pub(super) struct Row {
-    x: [f32; LANES],
-    y: [f32; LANES],
-    z: [f32; LANES],
-    pub to: [u16; LANES],
-    /// The face left of the edge to each.
-    left: [u16; LANES],
-}
-
-impl Row {
-    /// The heights of the neighbours in a direction, as [`DVec3::dot`] computes them.
-    #[inline]
-    pub fn heights(&self, dir: DVec3) -> [f64; LANES] {
-        let [x, y, z] = [self.x, self.y, self.z].map(|c| f64x4::from(c.map(f64::from)));
-        (x * dir.x + y * dir.y + z * dir.z).to_array()
-    }
-
-    #[inline]
-    fn point(&self, lane: usize) -> DVec3 {
-        Vec3::new(self.x[lane], self.y[lane], self.z[lane]).as_dvec3()
-    }
-}
-
 /// The neighbours of vertex `v` are the rows `first[v]..first[v + 1]`; the last row is filled up
-/// with its own last neighbour.
+/// with its own last neighbour. `left` has the face left of each directed edge.
 #[derive(Clone, Debug)]
 pub(super) struct EdgeGraph {
     first: Box<[u32]>,
-    rows: Box<[Row]>,
+    rows: Box<[[u16; LANES]]>,
+    left: Box<[[u16; LANES]]>,
 }
 
 impl EdgeGraph {
     /// From a surface whose triangles went to the faces `face_of`.
-    pub fn new(points: &[Vec3], surface: &Surface<'_>, face_of: &[u16]) -> Self {
-        let mut first = Vec::with_capacity(points.len() + 1);
-        let mut rows = Vec::with_capacity(2 * points.len());
+    pub fn new(surface: &Surface<'_>, face_of: &[u16]) -> Self {
+        let count = surface.vertex_count();
+        let mut first = Vec::with_capacity(count + 1);
+        let mut rows = Vec::with_capacity(2 * count);
+        let mut left = Vec::with_capacity(2 * count);
         first.push(0);
-        for v in 0..points.len() as u32 {
+        for v in 0..count as u32 {
             for chunk in surface.leaving(v).chunks(LANES) {
                 let lanes: [Side; LANES] = array::from_fn(|i| chunk[i.min(chunk.len() - 1)]);
-                let ends = lanes.map(|side| points[usize::from(side.to)]);
-                rows.push(Row {
-                    x: ends.map(|end| end.x),
-                    y: ends.map(|end| end.y),
-                    z: ends.map(|end| end.z),
-                    to: lanes.map(|side| side.to),
-                    left: lanes.map(|side| face_of[triangle(side.half_edge)]),
-                });
+                rows.push(lanes.map(|side| side.to));
+                left.push(lanes.map(|side| face_of[triangle(side.half_edge)]));
             }
             first.push(rows.len() as u32);
         }
         Self {
             first: first.into(),
             rows: rows.into(),
+            left: left.into(),
         }
     }
 
     /// The neighbours of a vertex, in fours; the last may be repeated.
     #[inline]
-    pub fn rows(&self, vertex: VertexId) -> &[Row] {
+    pub fn rows(&self, vertex: VertexId) -> &[[u16; LANES]] {
         let v = vertex as usize;
         &self.rows[self.first[v] as usize..self.first[v + 1] as usize]
     }
 
-    /// The neighbours of a vertex and where they are; the last may be repeated.
+    /// The neighbours of a vertex; the last may be repeated.
     #[inline]
-    pub fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = (VertexId, DVec3)> {
-        let rows = self.rows(vertex).iter();
-        rows.flat_map(|row| array::from_fn::<_, LANES, _>(|i| (row.to[i].into(), row.point(i))))
+    pub fn neighbors(&self, vertex: VertexId) -> &[u16] {
+        self.rows(vertex).as_flattened()
     }
 
     /// The faces around a vertex, some of them more than once.
     #[inline]
-    pub fn faces_at(&self, vertex: VertexId) -> impl Iterator<Item = u16> {
-        self.rows(vertex).iter().flat_map(|row| row.left)
+    pub fn faces_at(&self, vertex: VertexId) -> &[u16] {
+        let v = vertex as usize;
+        self.left[self.first[v] as usize..self.first[v + 1] as usize].as_flattened()
     }
 
     /// The name of an edge, the same for both directions.
@@ -107,14 +75,12 @@ impl EdgeGraph {
     /// would end is not predictable.
     #[inline]
     fn place(&self, from: VertexId, to: VertexId) -> Option<usize> {
-        let mut place = usize::MAX;
-        for (r, row) in self.rows(from).iter().enumerate().rev() {
-            for (lane, &w) in row.to.iter().enumerate().rev() {
-                let is_it = VertexId::from(w) == to;
-                place = if is_it { r * LANES + lane } else { place };
-            }
+        let around = self.neighbors(from);
+        let mut place = around.len();
+        for (i, &w) in around.iter().enumerate().rev() {
+            place = if VertexId::from(w) == to { i } else { place };
         }
-        (place != usize::MAX).then_some(place)
+        (place < around.len()).then_some(place)
     }
 
     /// The end vertices of an edge.
@@ -123,21 +89,18 @@ impl EdgeGraph {
         if from as usize + 1 >= self.first.len() {
             return None;
         }
-        let row = self.rows(from).get(place as usize / LANES)?;
-        Some([from, row.to[place as usize % LANES].into()])
+        let to = *self.neighbors(from).get(place as usize)?;
+        Some([from, to.into()])
     }
 
     /// The faces on both sides of the edge between two neighbours.
     pub fn faces_beside(&self, ends: [VertexId; 2]) -> Option<[FaceId; 2]> {
-        let left = |from, to| {
-            let place = self.place(from, to)?;
-            Some(self.rows(from)[place / LANES].left[place % LANES].into())
-        };
+        let left = |from, to| Some(self.faces_at(from)[self.place(from, to)?].into());
         Some([left(ends[0], ends[1])?, left(ends[1], ends[0])?])
     }
 
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.first) + size_of_val(&*self.rows)
+        size_of_val(&*self.first) + size_of_val(&*self.rows) + size_of_val(&*self.left)
     }
 }
 

@@ -48,10 +48,10 @@ impl Hull {
         self.faces.len()
     }
 
-    /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 237 bytes
-    /// per vertex: 12 for the point, 132 for the neighbours, where they are, and the faces between
-    /// them, 56 for the planes of two faces, 36 for their corners and edges, 1 for the climb; and at
-    /// most 768 bytes for the start table. Joined faces cost less.
+    /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 141 bytes
+    /// per vertex: 12 for the point, 36 for the neighbours and the faces between them, 56 for the
+    /// planes of two faces, 36 for their corners and edges, 1 for the climb; and at most 768 bytes
+    /// for the start table. Joined faces cost less.
     pub fn heap_bytes(&self) -> usize {
         size_of_val(&*self.points)
             + self.graph.heap_bytes()
@@ -106,8 +106,8 @@ impl Polytope for Hull {
 
     /// The neighbours on the triangulated surface; the last may be repeated.
     #[inline]
-    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = (VertexId, DVec3)> {
-        self.graph.neighbors(vertex)
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
+        self.graph.neighbors(vertex).iter().map(|&v| v.into())
     }
 
     #[inline]
@@ -143,7 +143,7 @@ impl Polytope for Hull {
     #[inline]
     fn face_beside(&self, ends: [VertexId; 2], dir: DVec3) -> FaceId {
         match self.graph.faces_beside(ends) {
-            Some([a, b]) => self.faces.most_aligned([a as u16, b as u16], dir),
+            Some([a, b]) => self.faces.most_aligned(&[a as u16, b as u16], dir),
             None => self.face_at(ends[0], dir),
         }
     }

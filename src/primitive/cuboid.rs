@@ -78,10 +78,8 @@ impl Polytope for CuboidPolytope {
     }
 
     #[inline]
-    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = (VertexId, DVec3)> {
-        (0..3)
-            .map(move |k| vertex ^ 1 << k)
-            .map(|v| (v, self.vertex(v)))
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
+        (0..3).map(move |k| vertex ^ 1 << k)
     }
 
     #[inline]

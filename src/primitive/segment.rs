@@ -65,8 +65,8 @@ impl Polytope for Segment {
     }
 
     #[inline]
-    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = (VertexId, DVec3)> {
-        std::iter::once((vertex ^ 1, self.vertex(vertex ^ 1)))
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
+        std::iter::once(vertex ^ 1)
     }
 
     #[inline]

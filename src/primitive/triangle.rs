@@ -69,10 +69,8 @@ impl Polytope for TrianglePolytope {
     }
 
     #[inline]
-    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = (VertexId, DVec3)> {
-        (1..3)
-            .map(move |k| (vertex + k) % 3)
-            .map(|v| (v, self.vertex(v)))
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
+        (1..3).map(move |k| (vertex + k) % 3)
     }
 
     #[inline]

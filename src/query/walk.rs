@@ -52,13 +52,15 @@ pub(super) fn around<A: Polytope, B: Polytope>(
     let sideways = (normal * normal.dot(vertex.w) - vertex.w).try_normalize()?;
     let mut first = Turn::default();
     let corner_1 = cso.shape_1.vertex(id_1);
-    for (neighbor, at) in cso.shape_1.neighbors(id_1) {
-        first.meet([normal, sideways], at - corner_1, [neighbor, id_2]);
+    for neighbor in cso.shape_1.neighbors(id_1) {
+        let along = cso.shape_1.vertex(neighbor) - corner_1;
+        first.meet([normal, sideways], along, [neighbor, id_2]);
     }
     let corner_2 = cso.shape_2.vertex(id_2);
     let seen = [normal, sideways].map(|dir| cso.pose.direction_to_2(dir));
-    for (neighbor, at) in cso.shape_2.neighbors(id_2) {
-        first.meet(seen, corner_2 - at, [id_1, neighbor]);
+    for neighbor in cso.shape_2.neighbors(id_2) {
+        let along = corner_2 - cso.shape_2.vertex(neighbor);
+        first.meet(seen, along, [id_1, neighbor]);
     }
     if first.tangent == f64::INFINITY {
         return None;
@@ -137,8 +139,8 @@ impl Ridge {
         // The way from the one normal to the other goes from 0 to 1.
         let mut nearest = 1.0;
         let mut level = self.vertex;
-        for (neighbor, at) in q.neighbors(self.vertex) {
-            let along = at - corner;
+        for neighbor in q.neighbors(self.vertex) {
+            let along = q.vertex(neighbor) - corner;
             let (below, above) = (first.dot(along).min(0.0), last.dot(along));
             // The edge rises on the way, and before the nearest one so far.
             let way = -below / (above - below);
