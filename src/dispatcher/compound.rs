@@ -11,7 +11,7 @@ use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints};
 use parry3d::shape::{Compound, Shape};
 
 use super::constraints::Constraints;
-use super::hulls::Proved;
+use super::hulls::LastProved;
 use super::sub_pairs::{Part, Update};
 use super::{IsaGjkDispatcher, pair};
 
@@ -38,7 +38,7 @@ pub(super) fn compounds<M, C>(
 {
     let mut update = Update::begin(dispatcher, prediction, manifolds, workspace);
     let pos21 = pos12.inverse();
-    let mut proved_2 = [Proved::default(); PROOFS];
+    let mut proved_2 = [LastProved::default(); PROOFS];
     let whole_2 = c2.local_aabb().transform_by(pos12).loosened(prediction);
     for i in c1.bvh().intersect_aabb(&whole_2) {
         let mut part_1 = part(c1, i);
@@ -103,6 +103,6 @@ fn part(compound: &Compound, id: u32) -> Part<'_> {
         shape: &**shape,
         pos: Some(*pos),
         constraints: Constraints::given(constraints.map(|n| n as &dyn NormalConstraints)),
-        proved: Proved::default(),
+        proved: LastProved::default(),
     }
 }

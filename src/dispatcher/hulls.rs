@@ -86,15 +86,57 @@ fn same_points(a: &[Vec3], b: &[Vec3]) -> bool {
 #[derive(Clone, Copy)]
 pub(super) struct HullRef(usize);
 
-/// The last polyhedron whose hull was proved, and which cannot have changed since: it is borrowed.
+/// Finds the hulls of polyhedra in the table.
+pub(super) trait Find<'a> {
+    /// The hull of a polyhedron; `None` if it has none.
+    fn find(&mut self, table: &mut HullTable, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef>;
+}
+
+/// Each with its proof.
+pub(super) struct EachProved;
+
+impl<'a> Find<'a> for EachProved {
+    #[inline]
+    fn find(&mut self, table: &mut HullTable, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
+        table.find(polyhedron)
+    }
+}
+
+impl<'a, F: Find<'a>> Find<'a> for &mut F {
+    #[inline]
+    fn find(&mut self, table: &mut HullTable, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
+        (**self).find(table, polyhedron)
+    }
+}
+
+/// Without another proof for the one that was proved last: it cannot have changed, it is borrowed.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Proved<'a>(Option<Proof<'a>>);
+pub(super) struct LastProved<'a>(Option<Proof<'a>>);
 
 #[derive(Clone, Copy)]
 struct Proof<'a> {
     polyhedron: &'a ConvexPolyhedron,
     place: HullRef,
     sweeps: u64,
+}
+
+impl<'a> Find<'a> for LastProved<'a> {
+    #[inline]
+    fn find(&mut self, table: &mut HullTable, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
+        if let Some(proof) = self.0
+            && std::ptr::eq(proof.polyhedron, polyhedron)
+            && proof.sweeps == table.sweeps
+        {
+            return Some(proof.place);
+        }
+        let place = table.find(polyhedron)?;
+        *self = Self(Some(Proof {
+            polyhedron,
+            place,
+            sweeps: table.sweeps,
+        }));
+        Some(place)
+    }
 }
 
 impl HullTable {
@@ -113,28 +155,6 @@ impl HullTable {
         }
         self.bytes = self.slots.iter().map(Slot::bytes).sum();
         self.sweep_at = 2 * self.bytes;
-    }
-
-    /// The hull of a polyhedron, without another proof if it is the one that was proved last.
-    #[inline]
-    pub fn find_proved<'a>(
-        &mut self,
-        polyhedron: &'a ConvexPolyhedron,
-        proved: &mut Proved<'a>,
-    ) -> Option<HullRef> {
-        if let Some(proof) = proved.0
-            && std::ptr::eq(proof.polyhedron, polyhedron)
-            && proof.sweeps == self.sweeps
-        {
-            return Some(proof.place);
-        }
-        let place = self.find(polyhedron)?;
-        *proved = Proved(Some(Proof {
-            polyhedron,
-            place,
-            sweeps: self.sweeps,
-        }));
-        Some(place)
     }
 
     /// The hull of a polyhedron, built if it is new; `None` if it has none.

@@ -14,7 +14,7 @@ use parry3d::shape::{
 };
 
 use super::constraints::Constraints;
-use super::hulls::Proved;
+use super::hulls::LastProved;
 use super::sub_pairs::{Part, Update};
 use super::{IsaGjkDispatcher, pair};
 
@@ -95,7 +95,7 @@ where
             } else {
                 Constraints::None
             },
-            proved: Proved::default(),
+            proved: LastProved::default(),
         };
         if swapped {
             update.parts(pos12, &mut hull, &mut part);

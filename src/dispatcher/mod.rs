@@ -26,7 +26,7 @@ use parry3d::shape::Shape;
 
 use constraints::Constraints;
 use convex::UpdateManifold;
-use hulls::Proved;
+use hulls::{EachProved, Find};
 use pair::Side;
 use parts::Mover;
 
@@ -186,14 +186,10 @@ where
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported> {
-        let side_1 = Side {
-            shape: g1,
-            proved: &mut Proved::default(),
-        };
-        let side_2 = Side {
-            shape: g2,
-            proved: &mut Proved::default(),
-        };
+        let [side_1, side_2] = [g1, g2].map(|shape| Side {
+            shape,
+            find: EachProved,
+        });
         let constraints = [normal_constraints1, normal_constraints2].map(Constraints::given);
         self.update_manifold(pos12, side_1, side_2, constraints, prediction, manifold)
     }
@@ -202,11 +198,11 @@ where
 impl IsaGjkDispatcher {
     /// Brings the manifold of two convex shapes up to date.
     #[inline]
-    fn update_manifold<M, C>(
+    fn update_manifold<'a, 'b, M, C>(
         &self,
         pos12: &Pose,
-        side_1: Side<'_, '_>,
-        side_2: Side<'_, '_>,
+        side_1: Side<'a, impl Find<'a>>,
+        side_2: Side<'b, impl Find<'b>>,
         constraints: [Constraints<'_>; 2],
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,

@@ -7,7 +7,7 @@ use parry3d::math::Real;
 use parry3d::shape::{Segment as ParrySegment, Shape, ShapeType, Triangle};
 
 use super::cache;
-use super::hulls::{HullRef, HullTable, Proved};
+use super::hulls::{EachProved, Find, HullRef, HullTable};
 use crate::epa::EpaScratch;
 use crate::hull::Hull;
 use crate::hull_shape::HullShape;
@@ -108,10 +108,10 @@ pub(super) fn are_hulls(shape_1: &dyn Shape, shape_2: &dyn Shape) -> bool {
         .all(|shape| is_hull(shape, shape.shape_type()))
 }
 
-/// A shape of a pair, and what is known of it from the pairs before, if these are the parts of one.
-pub(super) struct Side<'a, 'p> {
+/// A shape of a pair, and how to find its hull.
+pub(super) struct Side<'a, F> {
     pub shape: &'a dyn Shape,
-    pub proved: &'p mut Proved<'a>,
+    pub find: F,
 }
 
 /// Visits the pair if one of its shapes is a hull and the other one known; else `None`.
@@ -121,22 +121,18 @@ pub(super) fn visit<V: PairVisitor>(
     shape_2: &dyn Shape,
     visitor: V,
 ) -> Option<V::Output> {
-    let side_1 = Side {
-        shape: shape_1,
-        proved: &mut Proved::default(),
-    };
-    let side_2 = Side {
-        shape: shape_2,
-        proved: &mut Proved::default(),
-    };
+    let [side_1, side_2] = [shape_1, shape_2].map(|shape| Side {
+        shape,
+        find: EachProved,
+    });
     visit_sides(side_1, side_2, visitor)
 }
 
 /// As [`visit`], for pairs of parts.
 #[inline]
-pub(super) fn visit_sides<V: PairVisitor>(
-    side_1: Side<'_, '_>,
-    side_2: Side<'_, '_>,
+pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
+    side_1: Side<'a, impl Find<'a>>,
+    side_2: Side<'b, impl Find<'b>>,
     visitor: V,
 ) -> Option<V::Output> {
     let types = [side_1.shape.shape_type(), side_2.shape.shape_type()];
@@ -175,7 +171,7 @@ pub(super) fn visit_sides<V: PairVisitor>(
 }
 
 fn solid<'a>(
-    Side { shape, proved }: Side<'a, '_>,
+    Side { shape, mut find }: Side<'a, impl Find<'a>>,
     shape_type: ShapeType,
     hulls: &mut HullTable,
 ) -> Option<Solid<'a>> {
@@ -183,12 +179,12 @@ fn solid<'a>(
         ShapeType::Custom => (Core::Hull(shape.as_shape::<HullShape>()?.hull()), 0.0),
         ShapeType::ConvexPolyhedron => {
             let polyhedron = shape.as_convex_polyhedron()?;
-            (Core::Found(hulls.find_proved(polyhedron, proved)?), 0.0)
+            (Core::Found(find.find(hulls, polyhedron)?), 0.0)
         }
         ShapeType::RoundConvexPolyhedron => {
             let round = shape.as_round_convex_polyhedron()?;
             (
-                Core::Found(hulls.find_proved(&round.inner_shape, proved)?),
+                Core::Found(find.find(hulls, &round.inner_shape)?),
                 round.border_radius,
             )
         }

@@ -10,7 +10,7 @@ use parry3d::query::{ContactManifold, TypedWorkspaceData};
 use parry3d::shape::Shape;
 
 use super::constraints::Constraints;
-use super::hulls::Proved;
+use super::hulls::LastProved;
 use super::pair::Side;
 use super::{IsaGjkDispatcher, composite};
 
@@ -22,7 +22,7 @@ pub(super) struct Part<'a> {
     /// Where it is in the compound.
     pub pos: Option<Pose>,
     pub constraints: Constraints<'a>,
-    pub proved: Proved<'a>,
+    pub proved: LastProved<'a>,
 }
 
 impl<'a> Part<'a> {
@@ -32,14 +32,14 @@ impl<'a> Part<'a> {
             shape,
             pos: None,
             constraints: Constraints::None,
-            proved: Proved::default(),
+            proved: LastProved::default(),
         }
     }
 
-    fn side(&mut self) -> Side<'a, '_> {
+    fn side(&mut self) -> Side<'a, &mut LastProved<'a>> {
         Side {
             shape: self.shape,
-            proved: &mut self.proved,
+            find: &mut self.proved,
         }
     }
 }
