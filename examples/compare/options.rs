@@ -39,9 +39,9 @@ pub struct Options {
     #[arg(long, value_parser = value_parser!(u32).range(1..=100_000))]
     distinct: Option<u32>,
 
-    /// Frames to step after the warm-up, at least 2
-    #[arg(long, default_value_t = 480, value_parser = value_parser!(u32).range(2..))]
-    frames: u32,
+    /// Frames to step after the warm-up, at least 2 [default: 480; 240 for piles, which then rest]
+    #[arg(long, value_parser = value_parser!(u32).range(2..))]
+    frames: Option<u32>,
 
     /// Frames to step before counting
     #[arg(long, default_value_t = 60)]
@@ -161,7 +161,7 @@ impl Options {
     pub fn run_length(&self) -> RunLength {
         RunLength {
             warmup: self.warmup as usize,
-            frames: self.frames as usize,
+            frames: self.frames.unwrap_or(self.scene.default_frames()) as usize,
             verify: self.verify,
         }
     }

@@ -107,6 +107,15 @@ impl Scene {
         }
     }
 
+    /// A few seconds. What comes to rest in a heap is not watched for long when it lies still: then
+    /// rapier recycles the contacts of either dispatcher, and nothing is left to compare.
+    pub const fn default_frames(self) -> u32 {
+        match self {
+            Self::Pile | Self::Compound | Self::Trimesh | Self::Heightfield => 240,
+            _ => 480,
+        }
+    }
+
     /// Which hulls the scene can be filled with.
     pub const fn hulls(self) -> Hulls {
         match self {
