@@ -16,7 +16,9 @@ use parry3d::query::details::{
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Shape, ShapeType};
 
-use super::{IsaGjkDispatcher, compound, mesh, pair};
+use super::mesh::{self, Triangles};
+use super::sub_pairs::Update;
+use super::{IsaGjkDispatcher, compound, pair};
 
 /// Updates the manifolds of a pair in which a shape has parts. `false` if none has.
 pub(super) fn contact_manifolds<M, C>(
@@ -35,9 +37,7 @@ where
     // Parry's routines assert that boxes are not loosened by less than nothing.
     let prediction = prediction.max(0.0);
     let [s1, s2] = shapes;
-    if compound_with_hull(dispatcher, pos12, shapes, prediction, manifolds, workspace)
-        || mesh::contact_manifolds(dispatcher, pos12, shapes, prediction, manifolds, workspace)
-    {
+    if with_hull(dispatcher, pos12, shapes, prediction, manifolds, workspace) {
         return true;
     }
     let composites = [s1.as_composite_shape(), s2.as_composite_shape()];
@@ -117,8 +117,9 @@ pub(super) fn keep_one<M: Default + Clone, C: Default + Copy>(
     manifolds.push(ContactManifold::with_data(0, 0, M::default()));
 }
 
-/// A compound with a hull against another compound or a convex shape. `false` for other pairs.
-fn compound_with_hull<M, C>(
+/// A compound with a hull against another compound or a convex shape, or a hull against a shape made
+/// of triangles. `false` for other pairs.
+fn with_hull<M, C>(
     dispatcher: &IsaGjkDispatcher,
     pos12: &Pose,
     [s1, s2]: [&dyn Shape; 2],
@@ -130,27 +131,33 @@ where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
 {
-    let (compound, other, swapped) = match [s1.as_compound(), s2.as_compound()] {
-        [Some(c1), Some(c2)] => {
-            let ours = compound::has_hull(c1) || compound::has_hull(c2);
+    let is_hull = |shape: &dyn Shape| pair::is_hull(shape, shape.shape_type());
+    if let [Some(c1), Some(c2)] = [s1.as_compound(), s2.as_compound()] {
+        let ours = compound::has_hull(c1) || compound::has_hull(c2);
+        if ours {
+            let update = Update::begin(dispatcher, prediction, manifolds, workspace);
+            compound::compounds(update, pos12, [c1, c2]);
+        }
+        return ours;
+    }
+    for (first, second, swapped) in [(s1, s2, false), (s2, s1, true)] {
+        if let Some(compound) = first.as_compound() {
+            let ours = second.is_convex() && (is_hull(second) || compound::has_hull(compound));
             if ours {
-                let pair = [c1, c2];
-                compound::compounds(dispatcher, pos12, pair, prediction, manifolds, workspace);
+                let update = Update::begin(dispatcher, prediction, manifolds, workspace);
+                compound::compound_and_convex(update, pos12, compound, second, swapped);
             }
             return ours;
         }
-        [Some(c1), None] => (c1, s2, false),
-        [None, Some(c2)] => (c2, s1, true),
-        [None, None] => return false,
-    };
-    let is_hull = pair::is_hull(other, other.shape_type());
-    let ours = other.is_convex() && (is_hull || compound::has_hull(compound));
-    if ours {
-        compound::compound_and_convex(
-            dispatcher, pos12, compound, other, swapped, prediction, manifolds, workspace,
-        );
+        if let Some(triangles) = Triangles::of(first)
+            && is_hull(second)
+        {
+            let update = Update::begin(dispatcher, prediction, manifolds, workspace);
+            mesh::triangles_and_hull(update, pos12, triangles, second, swapped);
+            return true;
+        }
     }
-    ours
+    false
 }
 
 /// A height field against anything; one of the shapes is one.

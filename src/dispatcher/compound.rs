@@ -5,15 +5,14 @@
 //! queries. Here the boxes are those that the compound keeps, and manifolds stay where they are.
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::math::{Pose, Real};
-use parry3d::query::ContactManifold;
-use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints};
+use parry3d::math::Pose;
+use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{Compound, Shape};
 
 use super::constraints::Constraints;
 use super::hulls::LastProved;
+use super::pair;
 use super::sub_pairs::{Part, Update};
-use super::{IsaGjkDispatcher, pair};
 
 /// Of a compound with more parts than this, some prove their hulls more than once.
 const PROOFS: usize = 8;
@@ -25,24 +24,20 @@ pub(super) fn has_hull(compound: &Compound) -> bool {
 }
 
 /// Two compounds.
-pub(super) fn compounds<M, C>(
-    dispatcher: &IsaGjkDispatcher,
-    pos12: &Pose,
-    [c1, c2]: [&Compound; 2],
-    prediction: Real,
-    manifolds: &mut Vec<ContactManifold<M, C>>,
-    workspace: &mut Option<ContactManifoldsWorkspace>,
-) where
+pub(super) fn compounds<M, C>(mut update: Update<'_, M, C>, pos12: &Pose, [c1, c2]: [&Compound; 2])
+where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
 {
-    let mut update = Update::begin(dispatcher, prediction, manifolds, workspace);
     let pos21 = pos12.inverse();
     let mut proved_2 = [LastProved::default(); PROOFS];
-    let whole_2 = c2.local_aabb().transform_by(pos12).loosened(prediction);
+    let whole_2 = c2
+        .local_aabb()
+        .transform_by(pos12)
+        .loosened(update.prediction);
     for i in c1.bvh().intersect_aabb(&whole_2) {
         let mut part_1 = part(c1, i);
-        let near_1 = c1.aabbs()[i as usize].loosened(prediction);
+        let near_1 = c1.aabbs()[i as usize].loosened(update.prediction);
         let pos_part1_2 = c1.shapes()[i as usize].0.inv_mul(pos12);
         for k in c2.bvh().intersect_aabb(&near_1.transform_by(&pos21)) {
             // Boxes around turned boxes are large: the other way round many are apart.
@@ -61,23 +56,18 @@ pub(super) fn compounds<M, C>(
 }
 
 /// A compound and a convex shape; the convex one is the first if `swapped`.
-#[allow(clippy::too_many_arguments)] // Parry's routines take them so.
 pub(super) fn compound_and_convex<M, C>(
-    dispatcher: &IsaGjkDispatcher,
+    mut update: Update<'_, M, C>,
     pos12: &Pose,
     compound: &Compound,
     convex: &dyn Shape,
     swapped: bool,
-    prediction: Real,
-    manifolds: &mut Vec<ContactManifold<M, C>>,
-    workspace: &mut Option<ContactManifoldsWorkspace>,
 ) where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
 {
-    let mut update = Update::begin(dispatcher, prediction, manifolds, workspace);
     let place = if swapped { pos12.inverse() } else { *pos12 };
-    let whole = convex.compute_aabb(&place).loosened(prediction);
+    let whole = convex.compute_aabb(&place).loosened(update.prediction);
     let mut whole_part = Part::whole(convex);
     for i in compound.bvh().intersect_aabb(&whole) {
         let mut part = part(compound, i);

@@ -6,27 +6,22 @@
 //! are.
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
-use parry3d::math::{Pose, Real};
-use parry3d::query::ContactManifold;
-use parry3d::query::details::ContactManifoldsWorkspace;
-use parry3d::shape::{
-    HeightField, HeightFieldFlags, Shape, TriMesh, TriMeshFlags, Triangle, TrianglePseudoNormals,
-};
+use parry3d::math::Pose;
+use parry3d::shape::{HeightField, Shape, TriMesh, Triangle, TrianglePseudoNormals};
 
 use super::constraints::Constraints;
 use super::hulls::LastProved;
 use super::sub_pairs::{Part, Update};
-use super::{IsaGjkDispatcher, pair};
 
 /// A shape made of triangles.
 #[derive(Clone, Copy)]
-enum Triangles<'a> {
+pub(super) enum Triangles<'a> {
     Mesh(&'a TriMesh),
     Field(&'a HeightField),
 }
 
 impl<'a> Triangles<'a> {
-    fn of(shape: &'a dyn Shape) -> Option<Self> {
+    pub fn of(shape: &'a dyn Shape) -> Option<Self> {
         let mesh = shape.as_trimesh().map(Self::Mesh);
         mesh.or_else(|| shape.as_heightfield().map(Self::Field))
     }
@@ -43,13 +38,6 @@ impl<'a> Triangles<'a> {
         }
     }
 
-    fn has_normals(self) -> bool {
-        match self {
-            Self::Mesh(mesh) => mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES),
-            Self::Field(field) => field.flags().contains(HeightFieldFlags::FIX_INTERNAL_EDGES),
-        }
-    }
-
     fn normals(self, id: u32) -> Option<TrianglePseudoNormals> {
         match self {
             Self::Mesh(mesh) => mesh.triangle_normal_constraints(id),
@@ -58,43 +46,27 @@ impl<'a> Triangles<'a> {
     }
 }
 
-/// A hull and a shape made of triangles, in either order. `false` for other pairs.
-pub(super) fn contact_manifolds<M, C>(
-    dispatcher: &IsaGjkDispatcher,
+/// A shape made of triangles and a hull; the hull is the first if `swapped`.
+pub(super) fn triangles_and_hull<M, C>(
+    mut update: Update<'_, M, C>,
     pos12: &Pose,
-    [s1, s2]: [&dyn Shape; 2],
-    prediction: Real,
-    manifolds: &mut Vec<ContactManifold<M, C>>,
-    workspace: &mut Option<ContactManifoldsWorkspace>,
-) -> bool
-where
+    triangles: Triangles<'_>,
+    hull: &dyn Shape,
+    swapped: bool,
+) where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
 {
-    let (triangles, hull, swapped) = match [Triangles::of(s1), Triangles::of(s2)] {
-        [Some(triangles), None] => (triangles, s2, false),
-        [None, Some(triangles)] => (triangles, s1, true),
-        _ => return false,
-    };
-    if !pair::is_hull(hull, hull.shape_type()) {
-        return false;
-    }
-    let mut update = Update::begin(dispatcher, prediction, manifolds, workspace);
     let place = if swapped { pos12.inverse() } else { *pos12 };
-    let near = hull.compute_aabb(&place).loosened(prediction);
+    let near = hull.compute_aabb(&place).loosened(update.prediction);
     let mut hull = Part::whole(hull);
-    let has_normals = triangles.has_normals();
     triangles.each_near(&near, |id, triangle| {
         let normals = || triangles.normals(id);
         let mut part = Part {
             id,
             shape: triangle,
             pos: None,
-            constraints: if has_normals {
-                Constraints::OfTriangle(&normals)
-            } else {
-                Constraints::None
-            },
+            constraints: Constraints::OfTriangle(&normals),
             proved: LastProved::default(),
         };
         if swapped {
@@ -104,5 +76,4 @@ where
         }
     });
     update.end();
-    true
 }

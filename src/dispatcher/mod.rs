@@ -26,7 +26,7 @@ use parry3d::shape::Shape;
 
 use constraints::Constraints;
 use convex::UpdateManifold;
-use hulls::{EachProved, Find};
+use hulls::Find;
 use pair::Side;
 use parts::Mover;
 
@@ -186,10 +186,7 @@ where
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported> {
-        let [side_1, side_2] = [g1, g2].map(|shape| Side {
-            shape,
-            find: EachProved,
-        });
+        let (side_1, side_2) = (Side::alone(g1), Side::alone(g2));
         let constraints = [normal_constraints1, normal_constraints2].map(Constraints::given);
         self.update_manifold(pos12, side_1, side_2, constraints, prediction, manifold)
     }

@@ -114,6 +114,15 @@ pub(super) struct Side<'a, F> {
     pub find: F,
 }
 
+impl<'a> Side<'a, EachProved> {
+    /// A shape of which nothing is known.
+    #[inline]
+    pub fn alone(shape: &'a dyn Shape) -> Self {
+        let find = EachProved;
+        Self { shape, find }
+    }
+}
+
 /// Visits the pair if one of its shapes is a hull and the other one known; else `None`.
 #[inline]
 pub(super) fn visit<V: PairVisitor>(
@@ -121,11 +130,7 @@ pub(super) fn visit<V: PairVisitor>(
     shape_2: &dyn Shape,
     visitor: V,
 ) -> Option<V::Output> {
-    let [side_1, side_2] = [shape_1, shape_2].map(|shape| Side {
-        shape,
-        find: EachProved,
-    });
-    visit_sides(side_1, side_2, visitor)
+    visit_sides(Side::alone(shape_1), Side::alone(shape_2), visitor)
 }
 
 /// As [`visit`], for pairs of parts.

@@ -47,7 +47,7 @@ impl<'a> Part<'a> {
 /// The manifolds of a pair, while they are brought up to date.
 pub(super) struct Update<'a, M, C> {
     dispatcher: &'a IsaGjkDispatcher,
-    prediction: Real,
+    pub prediction: Real,
     manifolds: &'a mut Vec<ContactManifold<M, C>>,
     /// How many of them are of this frame; those of parts that meet no more come behind.
     done: usize,
