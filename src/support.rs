@@ -68,8 +68,9 @@ pub trait Polytope: Support {
     /// The face at `vertex` that looks most in direction `dir`.
     fn face_at(&self, vertex: VertexId, dir: DVec3) -> FaceId;
 
-    /// Of the faces on both sides of an edge the one that looks most in direction `dir`.
-    fn face_beside(&self, ends: [VertexId; 2], dir: DVec3) -> FaceId;
+    /// Of the faces on both sides of an edge, given by its name, the one that looks most in
+    /// direction `dir`; some face if there is no such edge.
+    fn face_beside(&self, edge: u32, dir: DVec3) -> FaceId;
 
     /// The name of the edge between two neighbouring vertices.
     fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32>;
@@ -134,6 +135,21 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
             w: on_1 - self.pose.point_to_1(on_2),
             on_1,
             ids: [id_1, id_2],
+        }
+    }
+
+    /// The difference of two vertices.
+    #[inline]
+    pub fn vertex(&self, ids: [VertexId; 2]) -> CsoVertex
+    where
+        A: Polytope,
+        B: Polytope,
+    {
+        let on_1 = self.shape_1.vertex(ids[0]);
+        CsoVertex {
+            w: on_1 - self.pose.point_to_1(self.shape_2.vertex(ids[1])),
+            on_1,
+            ids,
         }
     }
 

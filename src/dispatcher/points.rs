@@ -2,13 +2,15 @@
 
 use parry3d::math::Real;
 use parry3d::query::{ContactManifold, TrackedContact};
-use parry3d::shape::PackedFeatureId;
 
 use super::cache;
-use crate::manifold::{ContactPoint, Contacts, MAX_POINTS};
+use crate::manifold::{Contacts, MAX_POINTS};
 use crate::pose::RelativePose;
 
 /// Replaces the manifold's points, and hands the data (the solver's impulses) of the old ones on.
+///
+/// How many points there are and which of them are old is not predictable, and branches that go
+/// wrong cost more than the work: so all that a manifold can have are computed, wanted or not.
 pub(super) fn write_points<M, C: Default + Copy>(
     manifold: &mut ContactManifold<M, C>,
     pose: &RelativePose,
@@ -18,14 +20,14 @@ pub(super) fn write_points<M, C: Default + Copy>(
 ) {
     let normals = cache::ordered([manifold.local_n1, manifold.local_n2], swapped);
     let [n1, n2] = normals.map(|n| n.as_dvec3());
-    let ids = |contact: &ContactPoint| cache::ordered(contact.features.map(cache::pack), swapped);
-    let place = |contact: &ContactPoint| {
+    let count = contacts.as_slice().len();
+    let places = contacts.padded().each_ref().map(|contact| {
         let points = [
             contact.on_1 + n1 * borders[0],
             pose.point_to_2(contact.on_2) + n2 * borders[1],
         ];
         let [local_p1, local_p2] = cache::ordered(points.map(|p| p.as_vec3()), swapped);
-        let [fid1, fid2] = ids(contact);
+        let [fid1, fid2] = cache::ordered(contact.features.map(cache::pack), swapped);
         TrackedContact {
             local_p1,
             local_p2,
@@ -34,13 +36,12 @@ pub(super) fn write_points<M, C: Default + Copy>(
             fid2,
             data: (),
         }
-    };
-    let contacts = contacts.as_slice();
+    });
     let tracked = &mut manifold.points;
-    let old = Identities::of(tracked.iter().map(|contact| [contact.fid1, contact.fid2]));
-    let new = Identities::of(contacts.iter().map(ids));
-    if old == new && tracked.len() == contacts.len() {
-        for (tracked, place) in tracked.iter_mut().zip(contacts.iter().map(place)) {
+    let old = Identities::of(tracked);
+    let new = Identities::of(&places[..count]);
+    if old == new && tracked.len() == count {
+        for (tracked, place) in tracked.iter_mut().zip(&places) {
             // Copies of the data would cost more than all the rest.
             tracked.local_p1 = place.local_p1;
             tracked.local_p2 = place.local_p2;
@@ -50,17 +51,20 @@ pub(super) fn write_points<M, C: Default + Copy>(
         }
         return;
     }
-    let places = contacts.iter().map(place);
-    let heirs = heirs(tracked, &old, places.clone(), &new);
-    let data = heirs.map(|heir| heir.map_or_else(C::default, |j| tracked[j].data));
+    let heirs = heirs(tracked, &old, &places[..count], &new);
+    let mut inheritance = [C::default(); MAX_POINTS + 1];
+    for (data, tracked) in inheritance.iter_mut().zip(&**tracked).take(MAX_POINTS) {
+        *data = tracked.data;
+    }
     tracked.clear();
-    tracked.extend(places.zip(data).map(|(place, data)| TrackedContact {
+    let points = places.iter().zip(heirs).take(count);
+    tracked.extend(points.map(|(place, heir)| TrackedContact {
         local_p1: place.local_p1,
         local_p2: place.local_p2,
         dist: place.dist,
         fid1: place.fid1,
         fid2: place.fid2,
-        data,
+        data: inheritance[heir],
     }));
 }
 
@@ -69,14 +73,17 @@ pub(super) fn write_points<M, C: Default + Copy>(
 struct Identities([u64; MAX_POINTS]);
 
 impl Identities {
-    fn of(contacts: impl Iterator<Item = [PackedFeatureId; 2]>) -> Self {
+    fn of<C>(contacts: &[TrackedContact<C>]) -> Self {
         let mut identities = Self([0; MAX_POINTS]);
-        for (identity, ids) in identities.0.iter_mut().zip(contacts) {
-            *identity = cache::identity(ids);
+        for (identity, contact) in identities.0.iter_mut().zip(contacts) {
+            *identity = cache::identity([contact.fid1, contact.fid2]);
         }
         identities
     }
 }
+
+/// What inherits from no point.
+const NONE: usize = MAX_POINTS;
 
 /// For each new contact the old one whose data it takes over: that between the same features. What
 /// is left over goes to the nearest of the others, however far: an impulse in a wrong place of the
@@ -85,26 +92,29 @@ impl Identities {
 fn heirs<C>(
     old: &[TrackedContact<C>],
     old_ids: &Identities,
-    new: impl Iterator<Item = TrackedContact<()>>,
+    new: &[TrackedContact<()>],
     new_ids: &Identities,
-) -> [Option<usize>; MAX_POINTS] {
+) -> [usize; MAX_POINTS] {
     let old = &old[..old.len().min(MAX_POINTS)];
-    let mut heirs = [None; MAX_POINTS];
-    let mut left = [true; MAX_POINTS];
-    for (heir, sought) in heirs.iter_mut().zip(&new_ids.0) {
-        for (j, (id, left)) in old_ids.0.iter().zip(&mut left).take(old.len()).enumerate() {
-            if id == sought {
-                *heir = Some(j);
-                *left = false;
-            }
+    let mut heirs = [NONE; MAX_POINTS];
+    // A bit for each that has no heir yet.
+    let mut left = (1_u32 << old.len()) - 1;
+    for (heir, sought) in heirs.iter_mut().zip(new_ids.0) {
+        for (j, id) in old_ids.0.into_iter().enumerate() {
+            let same = (id == sought) & (j < old.len());
+            *heir = if same { j } else { *heir };
+            left &= !(u32::from(same) << j);
         }
     }
-    for (heir, new) in heirs.iter_mut().zip(new).filter(|(heir, _)| heir.is_none()) {
+    if left == 0 {
+        return heirs;
+    }
+    for (heir, new) in heirs.iter_mut().zip(new).filter(|(heir, _)| **heir == NONE) {
         let away = |j: &usize| old[*j].local_p1.distance_squared(new.local_p1);
-        let others = (0..old.len()).filter(|j| left[*j]);
-        *heir = others.min_by(|j, k| away(j).total_cmp(&away(k)));
-        if let Some(j) = *heir {
-            left[j] = false;
+        let others = (0..old.len()).filter(|j| left >> j & 1 == 1);
+        if let Some(j) = others.min_by(|j, k| away(j).total_cmp(&away(k))) {
+            *heir = j;
+            left &= !(1 << j);
         }
     }
     heirs

@@ -109,12 +109,10 @@ pub(super) fn grow(points: &[DVec3], faces: &Faces, graph: &EdgeGraph) -> Vec<Ca
 
 /// The faces beyond the sides of a face.
 fn beside(faces: &Faces, graph: &EdgeGraph, face: u16) -> impl Iterator<Item = FaceId> {
-    let corners = faces.polygon(face.into());
-    let ends = corners.iter().cycle().skip(1);
-    let sides = corners.iter().zip(ends);
-    sides.filter_map(|(&from, &to)| {
-        let [_, beyond] = graph.faces_beside([from.into(), to.into()])?;
-        Some(beyond)
+    let sides = 0..faces.polygon(face.into()).len();
+    sides.filter_map(move |i| {
+        let [left, right] = graph.faces_beside(faces.edge(face.into(), i)?)?;
+        Some(if left == face { right } else { left }.into())
     })
 }
 

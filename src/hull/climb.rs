@@ -20,8 +20,9 @@
 //! measured in `tests/hill_climbing.rs`.
 
 use glam::{DVec3, Vec3};
+use wide::f64x4;
 
-use super::graph::{EdgeGraph, LANES};
+use super::graph::EdgeGraph;
 use crate::stats::Cost;
 use crate::support::VertexId;
 use crate::tolerance::{LARGE_FACE, PLATEAU, SHORT_EDGE};
@@ -48,16 +49,18 @@ pub(super) fn support(
     let mut at = start;
     let mut value = slope.height(dir, at);
     loop {
-        let step = slope.best_neighbor(dir, value, at);
-        if step.best != at {
-            (at, value) = (step.best, step.value);
+        let top = slope.best_neighbor(dir, at);
+        if top.height > value {
+            (at, value) = (top.vertex, top.height);
             cost.climb_moves += 1;
             continue;
         }
-        let fall = value - step.top;
+        let fall = value - top.height;
         let tie = PLATEAU * slope.radius;
-        if fall * fall <= tie * tie * dir.length_squared()
-            && slope.fragile[at as usize]
+        let ties = fall * fall <= tie * tie * dir.length_squared();
+        // Together: ties are not predictable (along an edge's normal its ends tie), fragile
+        // vertices are.
+        if ties & slope.fragile[at as usize]
             && let Some(exit) = slope.leave_plateau(dir, at)
         {
             (at, value) = (exit, slope.height(dir, exit));
@@ -68,13 +71,10 @@ pub(super) fn support(
     }
 }
 
-/// What a look around a vertex showed.
-struct Step {
-    /// The best of the vertex and its neighbours, and its height.
-    best: VertexId,
-    value: f64,
-    /// The height of the best neighbour.
-    top: f64,
+/// The best neighbour of a vertex, and its height.
+struct Top {
+    vertex: VertexId,
+    height: f64,
 }
 
 impl Slope<'_> {
@@ -86,19 +86,28 @@ impl Slope<'_> {
     /// A row at a time, and selections instead of branches: neither how many neighbours there are
     /// nor which of them is better is predictable.
     #[inline(always)]
-    fn best_neighbor(&self, dir: DVec3, mut value: f64, at: VertexId) -> Step {
-        let mut best = at;
-        let mut top = f64::NEG_INFINITY;
-        for row in self.graph.rows(at) {
-            let values: [f64; LANES] = row.map(|w| self.height(dir, w.into()));
-            for (&w, d) in row.iter().zip(values) {
-                let better = d > value;
-                best = if better { w.into() } else { best };
-                value = if better { d } else { value };
-                top = if d > top { d } else { top };
-            }
+    fn best_neighbor(&self, dir: DVec3, at: VertexId) -> Top {
+        let rows = self.graph.rows(at);
+        let [x, y, z] = dir.to_array().map(f64x4::splat);
+        let mut top = f64x4::splat(f64::NEG_INFINITY);
+        // Whole numbers as bits, since lanes are selected together with those of the heights.
+        let mut row_of_top = f64x4::ZERO;
+        for (r, row) in rows.iter().enumerate() {
+            let corners = row.map(|w| self.points[usize::from(w)]);
+            let heights = f64x4::new(corners.map(|p| p.x.into())) * x
+                + f64x4::new(corners.map(|p| p.y.into())) * y
+                + f64x4::new(corners.map(|p| p.z.into())) * z;
+            let better = heights.simd_gt(top);
+            top = better.bitselect(heights, top);
+            row_of_top = better.bitselect(f64x4::splat(f64::from_bits(r as u64)), row_of_top);
         }
-        Step { best, value, top }
+        let (heights, row_of_top) = (top.to_array(), row_of_top.to_array());
+        let higher = |i: usize, j: usize| if heights[j] > heights[i] { j } else { i };
+        let lane = higher(higher(0, 1), higher(2, 3));
+        Top {
+            vertex: rows[row_of_top[lane].to_bits() as usize][lane].into(),
+            height: heights[lane],
+        }
     }
 
     /// A vertex above the plateau around `start`, or `None` if the plateau is the maximum.

@@ -3,7 +3,7 @@
 use std::array;
 
 use super::surface::{HalfEdge, Side, Surface, triangle};
-use crate::support::{FaceId, VertexId};
+use crate::support::VertexId;
 
 /// Neighbours are stored and evaluated in fours, so that a climb has no branch per neighbour.
 pub(super) const LANES: usize = 4;
@@ -13,12 +13,13 @@ pub(super) const LANES: usize = 4;
 const PLACE_BITS: u32 = 15;
 
 /// The neighbours of vertex `v` are the rows `first[v]..first[v + 1]`; the last row is filled up
-/// with its own last neighbour. `left` has the face left of each directed edge.
+/// with its own last neighbour. `left` and `right` have the faces beside each directed edge.
 #[derive(Clone, Debug)]
 pub(super) struct EdgeGraph {
     first: Box<[u32]>,
     rows: Box<[[u16; LANES]]>,
     left: Box<[[u16; LANES]]>,
+    right: Box<[[u16; LANES]]>,
 }
 
 impl EdgeGraph {
@@ -28,12 +29,15 @@ impl EdgeGraph {
         let mut first = Vec::with_capacity(count + 1);
         let mut rows = Vec::with_capacity(2 * count);
         let mut left = Vec::with_capacity(2 * count);
+        let mut right = Vec::with_capacity(2 * count);
+        let face = |half_edge| face_of[triangle(half_edge)];
         first.push(0);
         for v in 0..count as u32 {
             for chunk in surface.leaving(v).chunks(LANES) {
                 let lanes: [Side; LANES] = array::from_fn(|i| chunk[i.min(chunk.len() - 1)]);
                 rows.push(lanes.map(|side| side.to));
-                left.push(lanes.map(|side| face_of[triangle(side.half_edge)]));
+                left.push(lanes.map(|side| face(side.half_edge)));
+                right.push(lanes.map(|side| face(surface.twin(side.half_edge))));
             }
             first.push(rows.len() as u32);
         }
@@ -41,6 +45,7 @@ impl EdgeGraph {
             first: first.into(),
             rows: rows.into(),
             left: left.into(),
+            right: right.into(),
         }
     }
 
@@ -84,23 +89,36 @@ impl EdgeGraph {
     }
 
     /// The end vertices of an edge.
+    #[inline]
     pub fn edge(&self, id: u32) -> Option<[VertexId; 2]> {
-        let (from, place) = (id >> PLACE_BITS, id & ((1 << PLACE_BITS) - 1));
-        if from as usize + 1 >= self.first.len() {
-            return None;
-        }
-        let to = *self.neighbors(from).get(place as usize)?;
-        Some([from, to.into()])
+        let (from, row, lane) = self.locate(id)?;
+        Some([from, self.rows[row][lane].into()])
     }
 
-    /// The faces on both sides of the edge between two neighbours.
-    pub fn faces_beside(&self, ends: [VertexId; 2]) -> Option<[FaceId; 2]> {
-        let left = |from, to| Some(self.faces_at(from)[self.place(from, to)?].into());
-        Some([left(ends[0], ends[1])?, left(ends[1], ends[0])?])
+    /// The faces on both sides of an edge.
+    #[inline]
+    pub fn faces_beside(&self, id: u32) -> Option<[u16; 2]> {
+        let (_, row, lane) = self.locate(id)?;
+        Some([self.left[row][lane], self.right[row][lane]])
+    }
+
+    /// The lower vertex of an edge, and where the other one is among the rows.
+    #[inline]
+    fn locate(&self, id: u32) -> Option<(VertexId, usize, usize)> {
+        let (from, place) = (id >> PLACE_BITS, (id & ((1 << PLACE_BITS) - 1)) as usize);
+        let (start, end) = (
+            *self.first.get(from as usize)?,
+            *self.first.get(from as usize + 1)?,
+        );
+        let row = start as usize + place / LANES;
+        (row < end as usize).then_some((from, row, place % LANES))
     }
 
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.first) + size_of_val(&*self.rows) + size_of_val(&*self.left)
+        size_of_val(&*self.first)
+            + size_of_val(&*self.rows)
+            + size_of_val(&*self.left)
+            + size_of_val(&*self.right)
     }
 }
 

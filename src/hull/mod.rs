@@ -48,10 +48,11 @@ impl Hull {
         self.faces.len()
     }
 
-    /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 141 bytes
-    /// per vertex: 12 for the point, 36 for the neighbours and the faces between them, 56 for the
-    /// planes of two faces, 36 for their corners and edges, 1 for the climb; and at most 768 bytes
-    /// for the start table. Joined faces cost less.
+    /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 157 bytes
+    /// per vertex: 12 for the point, 52 for the neighbours and the faces beside their edges, 56 for
+    /// the planes of two faces, 36 for their corners and edges, 1 for the climb; and at most 768
+    /// bytes for the start table. Joined faces cost less, uneven numbers of neighbours a few bytes
+    /// more.
     pub fn heap_bytes(&self) -> usize {
         size_of_val(&*self.points)
             + self.graph.heap_bytes()
@@ -141,10 +142,10 @@ impl Polytope for Hull {
     }
 
     #[inline]
-    fn face_beside(&self, ends: [VertexId; 2], dir: DVec3) -> FaceId {
-        match self.graph.faces_beside(ends) {
-            Some([a, b]) => self.faces.most_aligned(&[a as u16, b as u16], dir),
-            None => self.face_at(ends[0], dir),
+    fn face_beside(&self, edge: u32, dir: DVec3) -> FaceId {
+        match self.graph.faces_beside(edge) {
+            Some(pair) => self.faces.most_aligned(&pair, dir),
+            None => self.face_at(0, dir),
         }
     }
 

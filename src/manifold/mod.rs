@@ -65,6 +65,11 @@ impl Contacts {
         &self.points[..self.len]
     }
 
+    /// As many contacts as there can be: those, and others that mean nothing.
+    pub(crate) fn padded(&self) -> &[ContactPoint; MAX_POINTS] {
+        &self.points
+    }
+
     /// The witness alone.
     pub fn witness(proximity: &Proximity) -> Self {
         let point = ContactPoint {

@@ -265,10 +265,7 @@ pub(super) fn facing(shape: &impl Polytope, feature: Feature, outward: DVec3) ->
     match feature {
         Feature::Face(face) => face,
         Feature::Vertex(vertex) => shape.face_at(vertex, outward),
-        Feature::Edge(edge) => match shape.edge(edge) {
-            Some(ends) => shape.face_beside(ends, outward),
-            None => shape.face_at(0, outward),
-        },
+        Feature::Edge(edge) => shape.face_beside(edge, outward),
     }
 }
 

@@ -81,7 +81,7 @@ impl Polytope for Ball {
     }
 
     #[inline]
-    fn face_beside(&self, _: [VertexId; 2], _: DVec3) -> FaceId {
+    fn face_beside(&self, _: u32, _: DVec3) -> FaceId {
         0
     }
 

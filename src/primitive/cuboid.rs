@@ -123,7 +123,8 @@ impl Polytope for CuboidPolytope {
     }
 
     #[inline]
-    fn face_beside(&self, ends: [VertexId; 2], dir: DVec3) -> FaceId {
+    fn face_beside(&self, edge: u32, dir: DVec3) -> FaceId {
+        let ends = self.edge(edge).unwrap_or_default();
         // Of the three faces at an end, the edge has those that do not cut across it.
         let along = (ends[0] ^ ends[1]).trailing_zeros().min(2);
         let mut across = dir;

@@ -100,7 +100,7 @@ impl Polytope for Segment {
     }
 
     #[inline]
-    fn face_beside(&self, _: [VertexId; 2], _: DVec3) -> FaceId {
+    fn face_beside(&self, _: u32, _: DVec3) -> FaceId {
         0
     }
 

@@ -107,8 +107,8 @@ impl Polytope for TrianglePolytope {
     }
 
     #[inline]
-    fn face_beside(&self, ends: [VertexId; 2], dir: DVec3) -> FaceId {
-        self.face_at(ends[0], dir)
+    fn face_beside(&self, _: u32, dir: DVec3) -> FaceId {
+        self.face_at(0, dir)
     }
 
     #[inline]

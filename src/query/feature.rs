@@ -13,9 +13,11 @@
 //!   of radius `d`; no direction has a smaller depth. *Globally*: no other face was looked at.
 
 mod polygon;
+mod seeds;
 mod verdict;
 
-pub(super) use verdict::{Seeds, Side, Verdict};
+pub(super) use seeds::Seeds;
+pub(super) use verdict::{Side, Verdict};
 
 use std::cmp::Ordering;
 
@@ -53,7 +55,6 @@ pub(super) fn certify<A: Polytope, B: Polytope>(
         max_distance,
         tolerance,
     };
-    let [v1, v2] = vertices(cso, features);
     match features {
         [Feature::Edge(e1), Feature::Edge(e2)] => {
             match (cso.shape_1.edge(e1), cso.shape_2.edge(e2)) {
@@ -61,12 +62,14 @@ pub(super) fn certify<A: Polytope, B: Polytope>(
                 _ => Verdict::NoPlane,
             }
         }
-        [Feature::Face(f1), _] if cso.shape_1.has_face(f1) => {
-            test.face(cso.shape_1, cso.shape_2, cso.pose, [f1, v2], cost)
+        [Feature::Face(f1), other] if cso.shape_1.has_face(f1) => {
+            let start = vertex_of(cso.shape_2, other);
+            test.face(cso.shape_1, cso.shape_2, cso.pose, [f1, start], cost)
         }
-        [_, Feature::Face(f2)] if cso.shape_2.has_face(f2) => {
+        [other, Feature::Face(f2)] if cso.shape_2.has_face(f2) => {
+            let start = vertex_of(cso.shape_1, other);
             let pose = cso.pose.inverse();
-            test.face(cso.shape_2, cso.shape_1, &pose, [f2, v1], cost)
+            test.face(cso.shape_2, cso.shape_1, &pose, [f2, start], cost)
                 .mirrored(cso.pose)
         }
         _ => Verdict::NoPlane,
@@ -165,15 +168,6 @@ impl Test {
         }
         let count = p.face_len(face);
         let corner = |i: usize| p.vertex(p.face_vertex(face, i)) - on_q;
-        let vertex = |i: usize| {
-            let id = p.face_vertex(face, i);
-            let on_1 = p.vertex(id);
-            CsoVertex {
-                w: on_1 - on_q,
-                on_1,
-                ids: [id, q_id],
-            }
-        };
         let certified = Proximity {
             signed_distance,
             normal,
@@ -182,25 +176,19 @@ impl Test {
             features: [Feature::Face(face), Feature::Vertex(q_id)],
         };
         if let Some(i) = side_beyond(count, corner, normal, self.tolerance) {
-            return Verdict::Beyond(Side::new(vertex(i), vertex((i + 1) % count), normal));
+            let next = if i + 1 < count { i + 1 } else { 0 };
+            return Verdict::Beyond(Side {
+                ends: [i, next].map(|i| [p.face_vertex(face, i), q_id]),
+                normal,
+                outward: (corner(next) - corner(i)).cross(normal),
+            });
         }
         let apex = p.center() - q_pose.point_to_1(q.center());
         let depth = -signed_distance - self.tolerance;
         if signed_distance >= 0.0 || pyramid_holds_ball(count, corner, apex, depth) {
             return Verdict::Certified(certified);
         }
-        let mut seeds = Seeds::default();
-        // Corners spread around the face, whatever their number.
-        let spread = count.min(4);
-        for i in 0..spread {
-            seeds.push(vertex(i * count / spread));
-        }
-        seeds.push(CsoVertex {
-            w: apex,
-            on_1: p.center(),
-            ids: [p.face_vertex(face, 0), q_id],
-        });
-        Verdict::Unproved(seeds, certified)
+        Verdict::Unproved(certified)
     }
 
     /// Two edges that cross; everything in frame 1.
@@ -245,7 +233,12 @@ impl Test {
         let vertices = parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], outward > 0.0);
         let corner = |i: usize| vertices[i].w;
         if let Some(i) = side_beyond(4, corner, normal, self.tolerance) {
-            return Verdict::Beyond(Side::new(vertices[i], vertices[(i + 1) % 4], normal));
+            let ends = [vertices[i], vertices[(i + 1) % 4]];
+            return Verdict::Beyond(Side {
+                ends: ends.map(|end| end.ids),
+                normal,
+                outward: (ends[1].w - ends[0].w).cross(normal),
+            });
         }
         let [s, _] = crossing(offset, along_1, along_2);
         let on_1 = a0 + along_1 * s;
@@ -260,13 +253,7 @@ impl Test {
         if signed_distance >= 0.0 || pyramid_holds_ball(4, corner, center, depth) {
             return Verdict::Certified(proximity);
         }
-        let mut seeds = Seeds::new(&vertices);
-        seeds.push(CsoVertex {
-            w: center,
-            on_1: cso.shape_1.center(),
-            ids: extreme.ids,
-        });
-        Verdict::Unproved(seeds, proximity)
+        Verdict::Unproved(proximity)
     }
 }
 

@@ -200,25 +200,23 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         loop {
             let verdict =
                 feature::certify(self.cso, features, self.max_distance, tolerance, self.cost);
-            let (next, way) = match verdict {
+            let (next, ends) = match verdict {
                 Verdict::Apart(apart) => return Some((Answer::Apart(apart), stage)),
                 Verdict::Certified(proximity) => return Some((Answer::Near(proximity), stage)),
-                Verdict::Unproved(seeds, candidate) => {
-                    return self.run_epa(seeds.as_slice(), candidate, gjk);
-                }
+                Verdict::Unproved(candidate) => return self.run_epa(&candidate, gjk),
                 Verdict::Beyond(side) => {
-                    let [from, to] = side.ends.map(|end| end.ids);
+                    let [from, to] = side.ends;
                     if crossed == Some([to, from]) {
                         // Back over the same side: what is nearest lies on it.
-                        return self.run_gjk(&side.ends, gjk);
+                        (None, side.ends)
+                    } else {
+                        crossed = Some(side.ends);
+                        (walk::across(self.cso, &side), side.ends)
                     }
-                    crossed = Some([from, to]);
-                    (walk::across(self.cso, &side), Seeds::new(&side.ends))
                 }
-                Verdict::Cut(vertex, normal) => (
-                    walk::around(self.cso, &vertex, normal),
-                    Seeds::new(&[vertex]),
-                ),
+                Verdict::Cut(vertex, normal) => {
+                    (walk::around(self.cso, &vertex, normal), [vertex.ids; 2])
+                }
                 Verdict::NoPlane => {
                     let (max, cost) = (self.max_distance, &mut *self.cost);
                     if let Some(answer) = corner::certify(self.cso, features, max, tolerance, cost)
@@ -227,31 +225,31 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                     }
                     let start = feature::vertices(self.cso, features);
                     let vertex = self.cso.support(normal, start, self.cost);
-                    let next = walk::around(self.cso, &vertex, normal);
-                    (next, Seeds::new(&[vertex]))
+                    (walk::around(self.cso, &vertex, normal), [vertex.ids; 2])
                 }
             };
             match next {
                 Some(next) if steps_left > 0 => features = next,
-                _ => return self.run_gjk(way.as_slice(), gjk),
+                _ => {
+                    let ends = ends.map(|ids| self.cso.vertex(ids));
+                    let distinct = if ends[0].ids == ends[1].ids { 1 } else { 2 };
+                    return self.run_gjk(&ends[..distinct], gjk);
+                }
             }
             steps_left -= 1;
             stage = Stage::Walk;
         }
     }
 
-    /// The depth, grown from points near the previous contact, if it is not that of the
-    /// `candidate`; where it finds the shapes separate, GJK finds how far.
-    fn run_epa(
-        &mut self,
-        seeds: &[CsoVertex],
-        candidate: Proximity,
-        gjk: [Stage; 2],
-    ) -> Option<(Answer, Stage)> {
+    /// The depth, grown from points near the `candidate`, if it is not its own; where it finds the
+    /// shapes separate, GJK finds how far.
+    fn run_epa(&mut self, candidate: &Proximity, gjk: [Stage; 2]) -> Option<(Answer, Stage)> {
         let known = -candidate.signed_distance;
-        let depth = match epa::penetration_below(self.cso, seeds, known, self.scratch, self.cost)? {
+        let seeds = Seeds::under(self.cso, candidate.features);
+        let (cso, seeds) = (self.cso, seeds.as_slice());
+        let depth = match epa::penetration_below(cso, seeds, known, self.scratch, self.cost)? {
             Depth::Found(depth) => depth,
-            Depth::Known => return Some((Answer::Near(candidate), gjk[1])),
+            Depth::Known => return Some((Answer::Near(*candidate), gjk[1])),
         };
         let separation = -depth.depth;
         let ids = depth.face[0].ids;

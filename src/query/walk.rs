@@ -18,7 +18,7 @@ pub(super) fn across<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     side: &Side,
 ) -> Option<[Feature; 2]> {
-    let [[from_1, from_2], [to_1, to_2]] = side.ends.map(|end| end.ids);
+    let [[from_1, from_2], [to_1, to_2]] = side.ends;
     let (normal, outward) = (side.normal, side.outward);
     if from_2 == to_2 {
         let ridge = Ridge {
@@ -65,17 +65,10 @@ pub(super) fn around<A: Polytope, B: Polytope>(
     if first.tangent == f64::INFINITY {
         return None;
     }
-    let ids = first.to;
     let normal = (normal + sideways * first.tangent).normalize();
-    let on_1 = cso.shape_1.vertex(ids[0]);
-    let end = CsoVertex {
-        w: on_1 - cso.pose.point_to_1(cso.shape_2.vertex(ids[1])),
-        on_1,
-        ids,
-    };
-    let beside = (end.w - vertex.w).cross(normal);
+    let beside = (cso.vertex(first.to).w - vertex.w).cross(normal);
     let side = Side {
-        ends: [*vertex, end],
+        ends: [vertex.ids, first.to],
         normal,
         outward: beside * beside.dot(sideways).signum(),
     };
@@ -129,7 +122,7 @@ impl Ridge {
         [normal, outward]: [DVec3; 2],
     ) -> Option<[Feature; 2]> {
         let edge = p.edge_id(self.edge[0], self.edge[1])?;
-        let face = p.face_beside(self.edge, outward);
+        let face = p.face_beside(edge, outward);
         let beyond = p.face_normal(face);
         if beyond == DVec3::ZERO {
             return None; // no plane to turn to
