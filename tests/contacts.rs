@@ -112,12 +112,16 @@ fn no_impulse_is_lost_when_contacts_change() {
     assert_eq!(data, [1, 2, 3, 4]);
 }
 
+fn flat_box() -> SharedShape {
+    let corners = [-1.0, 1.0]
+        .map(|x| [-1.0, 1.0].map(|z| [-HALF_HEIGHT, HALF_HEIGHT].map(|y| Vector::new(x, y, z))));
+    SharedShape::convex_hull(corners.as_flattened().as_flattened()).expect("a solid")
+}
+
 /// A box that slides on keeps the data of each corner with that corner.
 #[test]
 fn impulses_stay_with_their_corners() {
-    let corners = [-1.0, 1.0]
-        .map(|x| [-1.0, 1.0].map(|z| [-HALF_HEIGHT, HALF_HEIGHT].map(|y| Vector::new(x, y, z))));
-    let shape = SharedShape::convex_hull(corners.as_flattened().as_flattened()).expect("a solid");
+    let shape = flat_box();
     let mut manifolds = Vec::new();
     update(&mut manifolds, &shape, standing(Vector::new(0.0, 0.3, 0.0)));
     let corner = |p: Vector| u32::from(p.x > 0.0) * 2 + u32::from(p.z > 0.0) + 1;
@@ -133,4 +137,37 @@ fn impulses_stay_with_their_corners() {
     for point in &manifolds[0].points {
         assert_eq!(point.data, corner(point.local_p2));
     }
+}
+
+/// A box that stands on a corner is borne there by two contacts, each with data of its own. When it
+/// falls on a side, the second one's goes to another corner.
+#[test]
+fn the_deepest_contact_bears_twice_where_there_is_room() {
+    let shape = flat_box();
+    let corner = Vector::new(1.0, -HALF_HEIGHT, 1.0);
+    let on_its_corner = |tilt: Real| {
+        let turn = Rotation::from_scaled_axis(Vector::new(tilt, 0.0, -tilt));
+        Pose::from_parts(Vector::new(0.0, -(turn * corner).y - 1e-3, 0.0), turn)
+    };
+    let mut manifolds = Vec::new();
+    update(&mut manifolds, &shape, on_its_corner(0.2));
+    for (i, point) in manifolds[0].points.iter_mut().enumerate() {
+        assert!(
+            point.local_p2.distance(corner) < 1e-6 || point.dist > 0.02,
+            "{point:?} is no contact"
+        );
+        point.data = i as u32 + 1;
+    }
+    for tilt in [0.21, 0.2] {
+        update(&mut manifolds, &shape, on_its_corner(tilt));
+        let [first, second, ..] = &manifolds[0].points[..] else {
+            panic!("one contact alone");
+        };
+        assert_eq!((first.local_p2, first.dist), (second.local_p2, second.dist));
+        assert_eq!([first.data, second.data], [1, 2]);
+    }
+    update(&mut manifolds, &shape, on_its_corner(0.0));
+    let mut data: Vec<u32> = manifolds[0].points.iter().map(|p| p.data).collect();
+    data.sort_unstable();
+    assert_eq!(data, [1, 2, 3, 4]);
 }

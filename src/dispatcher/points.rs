@@ -101,7 +101,7 @@ fn heirs<C>(
     let mut left = (1_u32 << old.len()) - 1;
     for (heir, sought) in heirs.iter_mut().zip(new_ids.0) {
         for (j, id) in old_ids.0.into_iter().enumerate() {
-            let same = (id == sought) & (j < old.len());
+            let same = (id == sought) & (left >> j & 1 == 1) & (*heir == NONE);
             *heir = if same { j } else { *heir };
             left &= !(u32::from(same) << j);
         }

@@ -92,6 +92,9 @@ impl Contacts {
 
 /// The contacts around the witness of a query along its normal: those nearer than `max_distance`
 /// first, then the nearest of the others, which a solver needs for what moves fast.
+///
+/// Where there is room the first contact is there twice, as it is in parry's manifolds. To a solver
+/// a contact is a spring, and a body that lies on one or two of them sinks in too far.
 pub fn contacts<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     proximity: &Proximity,
@@ -121,6 +124,9 @@ pub fn contacts<A: Polytope, B: Polytope>(
     }
     for corner in reduce::spread(corners, first, same) {
         contacts.push(patch.contact(cso, corner));
+    }
+    if contacts.len < MAX_POINTS {
+        contacts.push(contacts.points[0]);
     }
     for corner in beyond.iter().take(MAX_POINTS - contacts.len) {
         contacts.push(patch.contact(cso, corner));

@@ -239,7 +239,8 @@ impl Filler<'_> {
         let side = (self.bodies as Real).sqrt().ceil() as usize;
         let spacing = 2.0 * SPACING * self.reach;
         let bouncers = self.bodies.div_ceil(SLEEPERS_PER_BOUNCER);
-        containers::floor(self.world, spacing * side as Real);
+        // Wide enough for those that bounce: each bounce turns them off their way.
+        containers::floor(self.world, 2.0 * spacing * side as Real);
         for i in 0..self.bodies - bouncers {
             let (x, z) = square_cell(i, side, spacing);
             let pose = resting_pose(self.shape(i), x, z);
