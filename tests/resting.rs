@@ -8,6 +8,7 @@ mod quality;
 #[path = "../examples/compare/scenes/mod.rs"]
 mod scenes;
 
+use std::collections::HashSet;
 use std::f32::consts::TAU;
 
 use isa_gjk::IsaGjkDispatcher;
@@ -51,6 +52,21 @@ fn towers_of_prisms_stand_and_fall_asleep() {
         assert!(seen.tilt < 2.0, "{sides} sides: tilt of {}°", seen.tilt);
         assert!(seen.asleep_after.is_some(), "{sides} sides: awake");
     }
+}
+
+/// Cans, loaves, mugs, motors and whatever else of the real hulls is flat below and above, mixed.
+#[test]
+fn towers_of_real_hulls_stand_and_fall_asleep() {
+    let params = SceneParams {
+        distinct: u32::MAX,
+        ..params(HullSource::Real, 128)
+    };
+    let (world, seen) = observe(Scene::Stack, &params, 400);
+    let masses = world.dynamic_bodies().map(|body| body.mass().to_bits());
+    let kinds = masses.collect::<HashSet<_>>().len();
+    assert!(kinds >= 10, "only {kinds} different hulls");
+    assert!(seen.tilt < 2.0, "tilt of {}°", seen.tilt);
+    assert!(seen.asleep_after.is_some(), "awake");
 }
 
 #[test]

@@ -14,7 +14,7 @@ const FRAMES: usize = 300;
 
 fn params(scene: Scene, hull_shape: bool) -> SceneParams {
     let hulls = match scene.hulls() {
-        Hulls::Prisms => HullSource::Prism { sides: 12 },
+        Hulls::Prisms | Hulls::Upright => HullSource::Prism { sides: 12 },
         Hulls::Boxes => HullSource::Box,
         Hulls::Any | Hulls::None => HullSource::Random { vertices: 40 },
     };

@@ -169,10 +169,11 @@ impl Options {
     fn hull_source(&self, vertices: u32) -> Result<HullSource, String> {
         let shape = match (&self.shape, self.scene.hulls()) {
             (Some(shape), Hulls::Any) => shape,
-            (None | Some(Shape::Prism), Hulls::Prisms) => &Shape::Prism,
+            (None | Some(Shape::Prism), Hulls::Prisms | Hulls::Upright) => &Shape::Prism,
+            (Some(Shape::Real), Hulls::Upright) => &Shape::Real,
             (None, Hulls::Boxes) => &Shape::Box,
             (None, Hulls::Any | Hulls::None) => &Shape::Random,
-            (Some(_), Hulls::Prisms | Hulls::Boxes | Hulls::None) => {
+            (Some(_), Hulls::Prisms | Hulls::Upright | Hulls::Boxes | Hulls::None) => {
                 return Err(format!(
                     "the scene {} makes its own shapes: leave --shape out, or choose another scene",
                     self.scene

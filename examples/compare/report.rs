@@ -69,7 +69,7 @@ impl Report {
             scene: scene.name(),
             hulls: match scene.hulls() {
                 Hulls::None => "no hulls".to_owned(),
-                Hulls::Prisms | Hulls::Boxes | Hulls::Any => params.hulls.to_string(),
+                _ => params.hulls.to_string(),
             },
             bodies: params.bodies,
             seed: params.seed,

@@ -76,12 +76,12 @@ enum Dispatcher {
 impl Options {
     fn params(&self) -> SceneParams {
         let hulls = match self.scene.hulls() {
-            Hulls::Any if self.real => HullSource::Real,
+            Hulls::Any | Hulls::Upright if self.real => HullSource::Real,
             Hulls::Any | Hulls::None => HullSource::Random {
                 vertices: self.vertices,
             },
             Hulls::Boxes => HullSource::Box,
-            Hulls::Prisms => HullSource::Prism {
+            Hulls::Prisms | Hulls::Upright => HullSource::Prism {
                 sides: (self.vertices / 2).max(3),
             },
         };

@@ -102,9 +102,9 @@ fn shapes(
             };
             vec![hulls::prism(sides, COIN_HALF_HEIGHT)?]
         }
+        Scene::Stack => hulls::upright(&params.hulls, count, random)?,
         Scene::Drum
         | Scene::Pile
-        | Scene::Stack
         | Scene::Spin
         | Scene::Rolling
         | Scene::Asleep

@@ -9,7 +9,7 @@ use oorandom::Rand32;
 use rapier3d::prelude::*;
 use serde_json::Value;
 
-use super::HullSource;
+use super::{HullSource, flat};
 
 /// Bounding radius of generated hulls, in metres.
 pub const RADIUS: Real = 0.5;
@@ -49,6 +49,23 @@ pub fn make(
             let hull = hull(&normalised(obj_points(path)?), &path.display().to_string())?;
             Ok(vec![hull])
         }
+    }
+}
+
+/// At most `distinct` hulls to build towers of.
+pub fn upright(
+    source: &HullSource,
+    distinct: u32,
+    random: &mut Rand32,
+) -> Result<Vec<SharedShape>, String> {
+    match source {
+        HullSource::Real => {
+            let flat = real(u32::MAX)?
+                .into_iter()
+                .filter_map(|hull| flat::upright(&hull));
+            Ok(flat.take(distinct as usize).collect())
+        }
+        _ => make(source, distinct, random),
     }
 }
 

@@ -2,6 +2,7 @@
 
 mod build;
 mod containers;
+mod flat;
 pub mod hulls;
 mod standing;
 mod world;
@@ -21,7 +22,7 @@ pub enum Scene {
     Drum,
     /// Hulls dropped between four walls.
     Pile,
-    /// Towers of prisms, eight high.
+    /// Towers of prisms or of flat real hulls, eight high.
     Stack,
     /// Towers of thin coins, sixteen high.
     Coins,
@@ -120,7 +121,8 @@ impl Scene {
     pub const fn hulls(self) -> Hulls {
         match self {
             Self::Cuboids | Self::Balls => Hulls::None,
-            Self::Stack | Self::Coins | Self::Spin | Self::Top => Hulls::Prisms,
+            Self::Stack => Hulls::Upright,
+            Self::Coins | Self::Spin | Self::Top => Hulls::Prisms,
             Self::Wall | Self::Dominoes => Hulls::Boxes,
             Self::Drum
             | Self::Pile
@@ -163,6 +165,8 @@ pub enum Hulls {
     None,
     /// Prisms only.
     Prisms,
+    /// Prisms, or of the real ones those that are flat below and above.
+    Upright,
     /// Boxes of its own.
     Boxes,
     /// From any source.
