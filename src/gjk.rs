@@ -40,25 +40,31 @@ impl Simplex {
             .map(|(_, vertex)| vertex)
     }
 
-    fn contains(&self, vertex: &CsoVertex) -> bool {
+    pub(crate) fn contains(&self, vertex: &CsoVertex) -> bool {
         self.vertices().any(|v| v.w == vertex.w)
     }
 
-    /// Puts a vertex into the lowest free slot. There is one: a full simplex ends the loop.
-    fn push(&mut self, vertex: CsoVertex) {
+    /// Puts a vertex into the lowest free slot. There is one: a full simplex holds the point that is
+    /// sought, and ends the loop.
+    pub(crate) fn push(&mut self, vertex: CsoVertex) {
         let slot = self.occupied.trailing_ones() as usize;
         self.slots[slot] = vertex;
         self.occupied |= 1 << slot;
     }
 
-    /// The point nearest to the origin; its face and weights refer to slots.
-    fn nearest<S: DistanceSubalgorithm>(&self) -> Nearest {
+    /// Drops the vertices that are not in the `face` of a nearest point.
+    pub(crate) fn keep(&mut self, face: u8) {
+        self.occupied = face;
+    }
+
+    /// The point nearest to `x`, relative to `x`; its face and weights refer to slots.
+    pub(crate) fn nearest<S: DistanceSubalgorithm>(&self, x: DVec3) -> Nearest {
         let mut points = [DVec3::ZERO; 4];
         let mut slots = [0; 4];
         let mut count = 0;
         for slot in 0..4 {
             if self.occupied >> slot & 1 == 1 {
-                points[count] = self.slots[slot].w;
+                points[count] = self.slots[slot].w - x;
                 slots[count] = slot;
                 count += 1;
             }
@@ -76,6 +82,12 @@ impl Simplex {
             by_slot.lambda[slot] = nearest.lambda[i];
         }
         by_slot
+    }
+
+    /// The point of shape 1 that a nearest point comes from.
+    pub(crate) fn on_1(&self, nearest: &Nearest) -> DVec3 {
+        let weighted = self.weighted(&nearest.lambda);
+        weighted.map(|(v, weight)| v.on_1 * weight).sum()
     }
 }
 
@@ -162,8 +174,8 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
         simplex.push(vertex);
         ids = vertex.ids;
     }
-    let mut nearest = simplex.nearest::<S>();
-    simplex.occupied = nearest.face;
+    let mut nearest = simplex.nearest::<S>(DVec3::ZERO);
+    simplex.keep(nearest.face);
     for _ in 0..MAX_ITERATIONS {
         cost.iterations += 1;
         let v = nearest.point;
@@ -188,18 +200,18 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
         }
         let before = simplex.occupied;
         simplex.push(w);
-        let next = simplex.nearest::<S>();
+        let next = simplex.nearest::<S>(DVec3::ZERO);
         if next.face == 0b1111 {
             return Outcome::Overlap(simplex);
         }
         // In exact arithmetic the norm decreases strictly; where it does not, rounding has the
         // last word and the answer at hand is as good as it gets.
         if next.point.length_squared() >= norm * norm {
-            simplex.occupied = before;
+            simplex.keep(before);
             return Outcome::Near(closest(&simplex, &nearest, lower_bound));
         }
         nearest = next;
-        simplex.occupied = nearest.face;
+        simplex.keep(nearest.face);
     }
     cost.fallbacks += 1;
     let v = nearest.point;
@@ -210,10 +222,7 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
 fn closest(simplex: &Simplex, nearest: &Nearest, lower_bound: f64) -> Closest {
     let v = nearest.point;
     let distance = v.length();
-    let on_1: DVec3 = simplex
-        .weighted(&nearest.lambda)
-        .map(|(vertex, weight)| vertex.on_1 * weight)
-        .sum();
+    let on_1 = simplex.on_1(nearest);
     Closest {
         distance,
         lower_bound: lower_bound.min(distance),

@@ -11,9 +11,10 @@
 
 use glam::DVec3;
 
-use crate::simplex::DistanceSubalgorithm;
+use crate::gjk::Simplex;
+use crate::simplex::{DistanceSubalgorithm, Nearest};
 use crate::stats::Cost;
-use crate::support::{Cso, CsoVertex, Support};
+use crate::support::{Cso, Support};
 use crate::tolerance::RAY_TOUCHING;
 
 /// A ray that grazes a smooth shape halves its distance with each iteration, and is done after
@@ -63,18 +64,20 @@ pub fn ray_cast<S: DistanceSubalgorithm, A: Support, B: Support>(
         time: 0.0,
         separating: None,
     };
-    let mut simplex = Simplex::new(start);
+    let mut simplex = Simplex::default();
+    simplex.push(start);
     let mut ids = start.ids;
-    // From the ray's point to the nearest point of the simplex.
-    let mut toward = start.w;
+    // Of the simplex to the ray's point.
+    let mut nearest = simplex.nearest::<S>(ray.point());
     for _ in 0..MAX_ITERATIONS {
         cost.iterations += 1;
+        let toward = nearest.point;
         let norm = toward.length();
         if !norm.is_finite() {
             return RayCast::Miss;
         }
         if norm <= target_distance + ray.tolerance() {
-            return ray.arrived(&simplex, toward);
+            return ray.arrived(&simplex, &nearest);
         }
         let vertex = cso.support(-toward, ids, cost);
         ids = vertex.ids;
@@ -87,17 +90,18 @@ pub fn ray_cast<S: DistanceSubalgorithm, A: Support, B: Support>(
         if !known {
             simplex.push(vertex);
         }
-        let reduced = simplex.reduce::<S>(ray.point());
+        let next = simplex.nearest::<S>(ray.point());
         // Without progress the nearest point is as near as rounding lets it come, and no plane
         // separates it: this is the impact.
-        if !advanced && (known || reduced.length_squared() >= norm * norm) {
-            return ray.arrived(&simplex, toward);
+        if !advanced && (known || next.point.length_squared() >= norm * norm) {
+            return ray.arrived(&simplex, &nearest);
         }
-        toward = reduced;
+        simplex.keep(next.face);
+        nearest = next;
     }
     // Too early a contact is better than none.
     cost.fallbacks += 1;
-    ray.arrived(&simplex, toward)
+    ray.arrived(&simplex, &nearest)
 }
 
 /// The point that marches along the ray.
@@ -149,68 +153,23 @@ impl Ray {
         Step::Advanced
     }
 
-    fn arrived(&self, simplex: &Simplex, toward: DVec3) -> RayCast {
+    fn arrived(&self, simplex: &Simplex, nearest: &Nearest) -> RayCast {
         let Some(separating) = self.separating else {
             return RayCast::Overlap;
         };
         // Across a gap the nearest points show the normal. Where they coincide they show
         // nothing, but the ray rests on the plane of the last jump.
         let direction = if self.target_distance > self.tolerance() {
-            toward.normalize_or(separating)
+            nearest.point.normalize_or(separating)
         } else {
             separating
         };
-        let on_1 = simplex.on_1();
+        let on_1 = simplex.on_1(nearest);
         RayCast::Hit(Impact {
             time: self.time,
             normal: -direction,
             on_1,
-            on_2: on_1 - toward,
+            on_2: on_1 - nearest.point,
         })
-    }
-}
-
-/// The vertices that span the nearest point, with its weights.
-struct Simplex {
-    vertices: [CsoVertex; 4],
-    weights: [f64; 4],
-    len: usize,
-}
-
-impl Simplex {
-    fn new(vertex: CsoVertex) -> Self {
-        Self {
-            vertices: [vertex; 4],
-            weights: [1.0, 0.0, 0.0, 0.0],
-            len: 1,
-        }
-    }
-
-    fn contains(&self, vertex: &CsoVertex) -> bool {
-        self.vertices[..self.len].iter().any(|v| v.w == vertex.w)
-    }
-
-    fn push(&mut self, vertex: CsoVertex) {
-        self.vertices[self.len] = vertex;
-        self.len += 1;
-    }
-
-    /// Keeps the vertices that span its point nearest to `x`; returns how to get there from `x`.
-    fn reduce<S: DistanceSubalgorithm>(&mut self, x: DVec3) -> DVec3 {
-        let points = self.vertices.map(|vertex| vertex.w - x);
-        let nearest = S::nearest(&points[..self.len]);
-        let mut kept = 0;
-        for i in (0..self.len).filter(|i| nearest.face >> i & 1 == 1) {
-            self.vertices[kept] = self.vertices[i];
-            self.weights[kept] = nearest.lambda[i];
-            kept += 1;
-        }
-        self.len = kept;
-        nearest.point
-    }
-
-    fn on_1(&self) -> DVec3 {
-        let weighted = self.vertices[..self.len].iter().zip(self.weights);
-        weighted.map(|(v, weight)| v.on_1 * weight).sum()
     }
 }

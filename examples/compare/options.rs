@@ -19,7 +19,7 @@ pub struct Options {
     pub scene: Scene,
 
     /// The hulls: random, prism, box, real, or the path of an .obj file [default: random; stack,
-    /// coins, spin and top have prisms]
+    /// coins, spin and top have prisms; stack can have real ones that are flat below and above]
     #[arg(long)]
     shape: Option<Shape>,
 
