@@ -108,10 +108,6 @@ pub struct Closest {
     pub simplex: Simplex,
 }
 
-/// An axis along which the shapes are separated by this share of their distance is kept: a
-/// weaker one would fail again as soon as the shapes move, a better one costs more iterations.
-const LASTING_AXIS: f64 = 0.5;
-
 /// How a GJK run ended.
 #[derive(Clone, Copy, Debug)]
 pub enum Outcome {
@@ -186,7 +182,7 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
         let w = cso.support(-v, ids, cost);
         ids = w.ids;
         let lower_bound = v.dot(w.w) / norm;
-        if lower_bound > max_distance && lower_bound >= LASTING_AXIS * norm {
+        if lower_bound > max_distance {
             return Outcome::Apart(SeparatingAxis {
                 axis: -v / norm,
                 separation: lower_bound,

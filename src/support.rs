@@ -1,5 +1,7 @@
 //! What the kernels see of a shape: extreme points with vertex ids, and of a polytope its faces.
 
+use std::cmp::Ordering;
+
 use glam::DVec3;
 
 use crate::pose::RelativePose;
@@ -177,6 +179,20 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
     /// A point inside, with its origins on the two shapes.
     pub fn center(&self) -> DVec3 {
         self.shape_1.center() - self.pose.point_to_1(self.shape_2.center())
+    }
+
+    /// The line of centres, and by how much the balls around the shapes are apart along it, if that
+    /// is more than `beyond`.
+    #[inline]
+    pub fn test_balls(&self, beyond: f64) -> Option<(DVec3, f64)> {
+        let offset = -self.center();
+        let reach = self.size() + beyond;
+        let squared = offset.length_squared();
+        if reach < 0.0 || squared.partial_cmp(&(reach * reach)) != Some(Ordering::Greater) {
+            return None;
+        }
+        let distance = squared.sqrt();
+        Some((offset / distance, distance - self.size()))
     }
 
     /// The length that tolerances of the whole pair are relative to.

@@ -168,9 +168,16 @@ impl PairVisitor for SeparationQuery<'_> {
             swapped,
         };
         let cost = &mut Cost::default();
-        let start = cso.vertex_towards_origin(cost);
         let max_distance = f64::from(self.max_distance) + borders[0] + borders[1];
-        let outcome = gjk::distance::<Voronoi, _, _>(&cso, &[start], max_distance, cost);
+        if cso.test_balls(max_distance).is_some() {
+            return Some(Separation::Beyond);
+        }
+        let axis = cso.towards_origin();
+        let vertex = match gjk::test_axis(&cso, axis, cso.start(axis), max_distance, cost) {
+            Ok(_) => return Some(Separation::Beyond),
+            Err(vertex) => vertex,
+        };
+        let outcome = gjk::distance::<Voronoi, _, _>(&cso, &[vertex], max_distance, cost);
         Some(match outcome {
             Outcome::Apart(_) => Separation::Beyond,
             Outcome::Overlap(_) => Separation::None,

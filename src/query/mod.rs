@@ -18,8 +18,6 @@ mod walk;
 
 pub use feature::{Feature, vertices};
 
-use std::cmp::Ordering;
-
 use glam::DVec3;
 
 use crate::epa::{self, Depth, EpaScratch, Penetration};
@@ -116,17 +114,10 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     /// was remembered of the vertices stays.
     #[inline]
     fn test_balls(&self, memory: &Memory) -> Option<SeparatingAxis> {
-        let offset = -self.cso.center();
-        let reach = self.cso.size() + self.max_distance;
-        let squared = offset.length_squared();
-        if reach < 0.0 || squared.partial_cmp(&(reach * reach)) != Some(Ordering::Greater) {
-            return None;
-        }
-        let distance = squared.sqrt();
-        let axis = offset / distance;
+        let (axis, separation) = self.cso.test_balls(self.max_distance)?;
         Some(SeparatingAxis {
             axis,
-            separation: distance - self.cso.size(),
+            separation,
             ids: match *memory {
                 Memory::Axis(_, ids) => ids,
                 _ => self.cso.start(axis),
