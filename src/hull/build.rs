@@ -6,6 +6,7 @@ use super::climb::{self, Slope};
 use super::cloud;
 use super::faces::{Faces, area_vector, longest_side};
 use super::graph::EdgeGraph;
+use super::scan::Scan;
 use super::start::StartTable;
 use super::surface::{Surface, next};
 use super::{Hull, HullError};
@@ -75,6 +76,7 @@ impl Hull {
             climb::support(slope, dir, start, &mut Cost::default()).1
         });
         let hull = Self {
+            scan: Scan::new(&points),
             points: points.into(),
             graph,
             faces,

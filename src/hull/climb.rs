@@ -45,7 +45,6 @@ pub(super) fn support(
     start: VertexId,
     cost: &mut Cost,
 ) -> (DVec3, VertexId) {
-    cost.supports += 1;
     let mut at = start;
     let mut value = slope.height(dir, at);
     loop {

@@ -1,4 +1,5 @@
-//! Convex hulls prepared for coherent queries: edge graph, faces and start-vertex table.
+//! Convex hulls prepared for coherent queries: edge graph, faces and start-vertex table; the
+//! smallest ones are scanned instead.
 
 mod build;
 mod caps;
@@ -7,6 +8,7 @@ mod cloud;
 mod error;
 mod faces;
 mod graph;
+mod scan;
 mod start;
 mod surface;
 pub(crate) mod topology;
@@ -21,6 +23,7 @@ use crate::support::{FaceId, Polytope, Support, VertexId};
 use climb::Slope;
 use faces::Faces;
 use graph::EdgeGraph;
+use scan::Scan;
 use start::StartTable;
 
 /// A convex polytope with everything precomputed that a query needs.
@@ -29,6 +32,7 @@ use start::StartTable;
 #[derive(Clone, Debug)]
 pub struct Hull {
     points: Box<[Vec3]>,
+    scan: Scan,
     graph: EdgeGraph,
     faces: Faces,
     start: StartTable,
@@ -52,9 +56,10 @@ impl Hull {
     /// per vertex: 12 for the point, 52 for the neighbours and the faces beside their edges, 56 for
     /// the planes of two faces, 36 for their corners and edges, 1 for the climb; and at most 768
     /// bytes for the start table. Joined faces cost less, uneven numbers of neighbours a few bytes
-    /// more.
+    /// more, and hulls that are scanned 16 more per vertex.
     pub fn heap_bytes(&self) -> usize {
         size_of_val(&*self.points)
+            + self.scan.heap_bytes()
             + self.graph.heap_bytes()
             + self.faces.heap_bytes()
             + self.start.heap_bytes()
@@ -65,6 +70,12 @@ impl Hull {
 impl Support for Hull {
     #[inline]
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
+        cost.supports += 1;
+        if !self.scan.is_empty() {
+            let height = dir.dot(self.vertex(start));
+            let vertex = self.scan.support(dir, start, height);
+            return (self.vertex(vertex), vertex);
+        }
         let slope = Slope {
             points: &self.points,
             graph: &self.graph,
