@@ -67,7 +67,7 @@ pub fn ray_cast<S: DistanceSubalgorithm, A: Support, B: Support>(
     let mut simplex = Simplex::default();
     simplex.push(start);
     let mut ids = start.ids;
-    // Of the simplex to the ray's point.
+    // The simplex's point nearest to that of the ray, relative to it.
     let mut nearest = simplex.nearest::<S>(ray.point());
     for _ in 0..MAX_ITERATIONS {
         cost.iterations += 1;

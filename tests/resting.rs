@@ -29,6 +29,14 @@ fn params(hulls: HullSource, bodies: u32) -> SceneParams {
     }
 }
 
+/// All of the real hulls.
+fn real_params(bodies: u32) -> SceneParams {
+    SceneParams {
+        distinct: u32::MAX,
+        ..params(HullSource::Real, bodies)
+    }
+}
+
 /// Steps a scene; drift and patches are those of the second half.
 fn observe(scene: Scene, params: &SceneParams, steps: usize) -> (World, Quality) {
     let dispatcher = IsaGjkDispatcher::default();
@@ -57,11 +65,7 @@ fn towers_of_prisms_stand_and_fall_asleep() {
 /// Cans, loaves, mugs, motors and whatever else of the real hulls is flat below and above, mixed.
 #[test]
 fn towers_of_real_hulls_stand_and_fall_asleep() {
-    let params = SceneParams {
-        distinct: u32::MAX,
-        ..params(HullSource::Real, 128)
-    };
-    let (world, seen) = observe(Scene::Stack, &params, 400);
+    let (world, seen) = observe(Scene::Stack, &real_params(128), 400);
     let masses = world.dynamic_bodies().map(|body| body.mass().to_bits());
     let kinds = masses.collect::<HashSet<_>>().len();
     assert!(kinds >= 10, "only {kinds} different hulls");
@@ -146,11 +150,7 @@ fn a_pile_of_many_sided_prisms_settles() {
 /// Hulls of real objects, thin ones with triangulated flat sides among them.
 #[test]
 fn a_pile_of_real_hulls_settles() {
-    let real = SceneParams {
-        distinct: u32::MAX,
-        ..params(HullSource::Real, 200)
-    };
-    let (world, seen) = observe(Scene::Pile, &real, 700);
+    let (world, seen) = observe(Scene::Pile, &real_params(200), 700);
     let energy = world.kinetic_energy();
     assert!(energy < 1e-3, "{energy} J");
     assert!(seen.median_speed < 1e-3, "{} m/s", seen.median_speed);

@@ -20,9 +20,9 @@
 //! measured in `tests/hill_climbing.rs`.
 
 use glam::{DVec3, Vec3};
-use wide::f64x4;
 
 use super::graph::EdgeGraph;
+use super::top::{Highest, coordinates};
 use crate::stats::Cost;
 use crate::support::VertexId;
 use crate::tolerance::{LARGE_FACE, PLATEAU, SHORT_EDGE};
@@ -48,13 +48,13 @@ pub(super) fn support(
     let mut at = start;
     let mut value = slope.height(dir, at);
     loop {
-        let top = slope.best_neighbor(dir, at);
-        if top.height > value {
-            (at, value) = (top.vertex, top.height);
+        let (best, height) = slope.best_neighbor(dir, at);
+        if height > value {
+            (at, value) = (best, height);
             cost.climb_moves += 1;
             continue;
         }
-        let fall = value - top.height;
+        let fall = value - height;
         let tie = PLATEAU * slope.radius;
         let ties = fall * fall <= tie * tie * dir.length_squared();
         // Together: ties are not predictable (along an edge's normal its ends tie), fragile
@@ -70,43 +70,24 @@ pub(super) fn support(
     }
 }
 
-/// The best neighbour of a vertex, and its height.
-struct Top {
-    vertex: VertexId,
-    height: f64,
-}
-
 impl Slope<'_> {
     #[inline]
     fn height(&self, dir: DVec3, vertex: VertexId) -> f64 {
         dir.dot(self.points[vertex as usize].as_dvec3())
     }
 
-    /// A row at a time, and selections instead of branches: neither how many neighbours there are
-    /// nor which of them is better is predictable.
+    /// The best neighbour of a vertex, and its height. A row at a time, and selections instead of
+    /// branches: neither how many neighbours there are nor which of them is better is predictable.
     #[inline(always)]
-    fn best_neighbor(&self, dir: DVec3, at: VertexId) -> Top {
+    fn best_neighbor(&self, dir: DVec3, at: VertexId) -> (VertexId, f64) {
         let rows = self.graph.rows(at);
-        let [x, y, z] = dir.to_array().map(f64x4::splat);
-        let mut top = f64x4::splat(f64::NEG_INFINITY);
-        // Whole numbers as bits, since lanes are selected together with those of the heights.
-        let mut row_of_top = f64x4::ZERO;
-        for (r, row) in rows.iter().enumerate() {
+        let mut highest = Highest::new(dir);
+        for (number, row) in rows.iter().enumerate() {
             let corners = row.map(|w| self.points[usize::from(w)]);
-            let heights = f64x4::new(corners.map(|p| p.x.into())) * x
-                + f64x4::new(corners.map(|p| p.y.into())) * y
-                + f64x4::new(corners.map(|p| p.z.into())) * z;
-            let better = heights.simd_gt(top);
-            top = better.bitselect(heights, top);
-            row_of_top = better.bitselect(f64x4::splat(f64::from_bits(r as u64)), row_of_top);
+            highest.look_at(number, coordinates(corners));
         }
-        let (heights, row_of_top) = (top.to_array(), row_of_top.to_array());
-        let higher = |i: usize, j: usize| if heights[j] > heights[i] { j } else { i };
-        let lane = higher(higher(0, 1), higher(2, 3));
-        Top {
-            vertex: rows[row_of_top[lane].to_bits() as usize][lane].into(),
-            height: heights[lane],
-        }
+        let top = highest.top();
+        (rows[top.four][top.lane].into(), top.height)
     }
 
     /// A vertex above the plateau around `start`, or `None` if the plateau is the maximum.

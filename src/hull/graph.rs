@@ -3,10 +3,8 @@
 use std::array;
 
 use super::surface::{HalfEdge, Side, Surface, triangle};
+use super::top::LANES;
 use crate::support::VertexId;
-
-/// Neighbours are stored and evaluated in fours, so that a climb has no branch per neighbour.
-pub(super) const LANES: usize = 4;
 
 /// An edge is named by its lower vertex, above this many bits, and its place in that vertex's
 /// row. With at most 2^15 vertices the name has 30 bits, as parry's packed feature ids do.

@@ -11,6 +11,7 @@ mod graph;
 mod scan;
 mod start;
 mod surface;
+mod top;
 pub(crate) mod topology;
 
 pub(crate) use cloud::surround;
@@ -32,7 +33,8 @@ use start::StartTable;
 #[derive(Clone, Debug)]
 pub struct Hull {
     points: Box<[Vec3]>,
-    scan: Scan,
+    /// Of a small hull.
+    scan: Option<Scan>,
     graph: EdgeGraph,
     faces: Faces,
     start: StartTable,
@@ -59,7 +61,7 @@ impl Hull {
     /// more, and hulls that are scanned 16 more per vertex.
     pub fn heap_bytes(&self) -> usize {
         size_of_val(&*self.points)
-            + self.scan.heap_bytes()
+            + self.scan.as_ref().map_or(0, Scan::heap_bytes)
             + self.graph.heap_bytes()
             + self.faces.heap_bytes()
             + self.start.heap_bytes()
@@ -71,9 +73,10 @@ impl Support for Hull {
     #[inline]
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
         cost.supports += 1;
-        if !self.scan.is_empty() {
-            let height = dir.dot(self.vertex(start));
-            let vertex = self.scan.support(dir, start, height);
+        if let Some(scan) = &self.scan {
+            let (highest, height) = scan.highest(dir);
+            let rises = height > dir.dot(self.vertex(start));
+            let vertex = if rises { highest } else { start };
             return (self.vertex(vertex), vertex);
         }
         let slope = Slope {

@@ -177,11 +177,8 @@ impl Test {
         };
         if let Some(i) = side_beyond(count, corner, normal, self.tolerance) {
             let next = if i + 1 < count { i + 1 } else { 0 };
-            return Verdict::Beyond(Side {
-                ends: [i, next].map(|i| [p.face_vertex(face, i), q_id]),
-                normal,
-                outward: (corner(next) - corner(i)).cross(normal),
-            });
+            let ends = [i, next].map(|i| [p.face_vertex(face, i), q_id]);
+            return Verdict::Beyond(Side::new(ends, corner(next) - corner(i), normal));
         }
         let apex = p.center() - q_pose.point_to_1(q.center());
         let depth = -signed_distance - self.tolerance;
@@ -233,12 +230,8 @@ impl Test {
         let vertices = parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], outward > 0.0);
         let corner = |i: usize| vertices[i].w;
         if let Some(i) = side_beyond(4, corner, normal, self.tolerance) {
-            let ends = [vertices[i], vertices[(i + 1) % 4]];
-            return Verdict::Beyond(Side {
-                ends: ends.map(|end| end.ids),
-                normal,
-                outward: (ends[1].w - ends[0].w).cross(normal),
-            });
+            let [from, to] = [vertices[i], vertices[(i + 1) % 4]];
+            return Verdict::Beyond(Side::new([from.ids, to.ids], to.w - from.w, normal));
         }
         let [s, _] = crossing(offset, along_1, along_2);
         let on_1 = a0 + along_1 * s;

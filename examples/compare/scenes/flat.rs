@@ -18,30 +18,17 @@ pub fn upright(shape: &SharedShape) -> Option<SharedShape> {
     let centre = hull.mass_properties(1.0).local_com;
     let points: Vec<_> = hull.points().iter().map(|p| *p - centre).collect();
     let radius = points.iter().map(|p| p.length()).fold(0.0, Real::max);
-    let widest = hull
-        .faces()
-        .iter()
-        .map(|face| {
-            (
-                base_width(&points, face.normal, LEVEL * radius),
-                face.normal,
-            )
-        })
+    let normals = hull.faces().iter().map(|face| face.normal);
+    let (width, down) = normals
+        .map(|normal| (base_width(&points, normal, LEVEL * radius), normal))
         .max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let (width, down) = widest;
     if width < MARGIN * radius {
         return None;
     }
     let turn = Rotation::from_rotation_arc(down, -Vector::Y);
     let turned = points.iter().map(|p| turn * *p);
-    let (low, high) = turned
-        .clone()
-        .fold((0.0, 0.0), |(low, high): (Real, Real), p| {
-            (low.min(p.y), high.max(p.y))
-        });
-    let raised: Vec<_> = turned
-        .map(|p| p - Vector::Y * (0.5 * (low + high)))
-        .collect();
+    let middle = Vector::Y * Aabb::from_points(turned.clone()).center().y;
+    let raised: Vec<_> = turned.map(|p| p - middle).collect();
     SharedShape::convex_hull(&raised)
 }
 

@@ -35,6 +35,17 @@ pub(in crate::query) struct Side {
     pub outward: DVec3,
 }
 
+impl Side {
+    /// From one vertex to the next, which is `along` away.
+    pub(super) fn new(ends: [[VertexId; 2]; 2], along: DVec3, normal: DVec3) -> Self {
+        Self {
+            ends,
+            normal,
+            outward: along.cross(normal),
+        }
+    }
+}
+
 impl Verdict {
     /// From the frame of shape 2, with the shapes swapped, to frame 1.
     pub(super) fn mirrored(self, pose: &RelativePose) -> Self {
