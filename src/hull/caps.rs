@@ -121,11 +121,8 @@ fn beside(faces: &Faces, graph: &EdgeGraph, face: u16) -> impl Iterator<Item = F
 fn bays(faces: &Faces, graph: &EdgeGraph, members: &[u16], outline: &[u16]) -> Vec<u16> {
     let corners = members.iter().flat_map(|&face| faces.polygon(face.into()));
     let inside = corners.filter(|vertex| !outline.contains(vertex));
-    let around = inside.flat_map(|&vertex| graph.faces_at(vertex.into()));
-    let mut bays: Vec<u16> = around
-        .copied()
-        .filter(|face| !members.contains(face))
-        .collect();
+    let around = inside.flat_map(|&vertex| graph.faces_at(vertex.into()).flatten());
+    let mut bays: Vec<u16> = around.filter(|face| !members.contains(face)).collect();
     bays.sort_unstable();
     bays.dedup();
     bays

@@ -83,11 +83,11 @@ impl Slope<'_> {
         let rows = self.graph.rows(at);
         let mut highest = Highest::new(dir);
         for (number, row) in rows.iter().enumerate() {
-            let corners = row.map(|w| self.points[usize::from(w)]);
+            let corners = row.to.map(|w| self.points[usize::from(w)]);
             highest.look_at(number, coordinates(corners));
         }
         let top = highest.top();
-        (rows[top.four][top.lane].into(), top.height)
+        (rows[top.four].to[top.lane].into(), top.height)
     }
 
     /// A vertex above the plateau around `start`, or `None` if the plateau is the maximum.
@@ -99,7 +99,7 @@ impl Slope<'_> {
         let mut plateau = vec![start];
         let mut next = 0;
         while let Some(&v) = plateau.get(next) {
-            for &w in self.graph.neighbors(v) {
+            for w in self.graph.neighbors(v) {
                 let height = self.height(dir, w.into());
                 if height > level + tie {
                     return Some(w.into());
@@ -126,14 +126,14 @@ pub(super) fn fragile(
     (0..points.len() as VertexId)
         .map(|v| {
             let to = |w: u16| points[v as usize].distance_squared(points[w as usize]);
-            let mut around = graph.neighbors(v).iter();
-            let short = around.any(|&w| to(w) < shortest * shortest);
-            let faces = graph.faces_at(v);
-            let first = faces[0];
-            let mut others = faces.iter().filter(|&&f| f != first);
+            let short = graph.neighbors(v).any(|w| to(w) < shortest * shortest);
+            let mut faces = graph.faces_at(v).flatten();
+            let large = faces.clone().any(|f| face_len(f) >= LARGE_FACE);
+            let first = faces.next();
+            let mut others = faces.filter(|&f| Some(f) != first);
             let second = others.next();
             let corner = others.any(|f| Some(f) != second);
-            short || !corner || faces.iter().any(|&f| face_len(f) >= LARGE_FACE)
+            short || !corner || large
         })
         .collect()
 }

@@ -169,14 +169,20 @@ impl Faces {
 
     /// Of these faces the one that looks most in direction `dir`.
     #[inline]
-    pub fn most_aligned(&self, candidates: &[u16], dir: DVec3) -> FaceId {
+    pub fn most_aligned<const N: usize>(
+        &self,
+        candidates: impl IntoIterator<Item = [u16; N]>,
+        dir: DVec3,
+    ) -> FaceId {
         let (mut best, mut most) = (0, f64::NEG_INFINITY);
-        for &face in candidates {
-            let aligned = self.normal(face.into()).dot(dir);
-            // Selections: which face it will be is not predictable.
-            let better = aligned > most;
-            most = if better { aligned } else { most };
-            best = if better { face } else { best };
+        for faces in candidates {
+            for face in faces {
+                let aligned = self.normal(face.into()).dot(dir);
+                // Selections: which face it will be is not predictable.
+                let better = aligned > most;
+                most = if better { aligned } else { most };
+                best = if better { face } else { best };
+            }
         }
         best.into()
     }

@@ -1,8 +1,8 @@
-//! The edge graph of a triangulated hull: rows of neighbours, and the face left of each edge.
+//! The edge graph of a triangulated hull: rows of neighbours, with the faces between them.
 
 use std::array;
 
-use super::surface::{HalfEdge, Side, Surface, triangle};
+use super::surface::{HalfEdge, Surface, triangle};
 use super::top::LANES;
 use crate::support::VertexId;
 
@@ -10,14 +10,20 @@ use crate::support::VertexId;
 /// row. With at most 2^15 vertices the name has 30 bits, as parry's packed feature ids do.
 const PLACE_BITS: u32 = 15;
 
-/// The neighbours of vertex `v` are the rows `first[v]..first[v + 1]`; the last row is filled up
-/// with its own last neighbour. `left` and `right` have the faces beside each directed edge.
+/// The neighbours of vertex `v` are the rows `first[v]..first[v + 1]`.
 #[derive(Clone, Debug)]
 pub(super) struct EdgeGraph {
     first: Box<[u32]>,
-    rows: Box<[[u16; LANES]]>,
-    left: Box<[[u16; LANES]]>,
-    right: Box<[[u16; LANES]]>,
+    rows: Box<[Row]>,
+}
+
+/// Four neighbours of a vertex, clockwise seen from outside. The last row is filled up with the
+/// first neighbour, which comes after the last one.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub to: [u16; LANES],
+    /// The face left of the edge to each of them. Right of it is that left of the next one.
+    left: [u16; LANES],
 }
 
 impl EdgeGraph {
@@ -26,45 +32,41 @@ impl EdgeGraph {
         let count = surface.vertex_count();
         let mut first = Vec::with_capacity(count + 1);
         let mut rows = Vec::with_capacity(2 * count);
-        let mut left = Vec::with_capacity(2 * count);
-        let mut right = Vec::with_capacity(2 * count);
-        let face = |half_edge| face_of[triangle(half_edge)];
         first.push(0);
         for v in 0..count as u32 {
-            for chunk in surface.leaving(v).chunks(LANES) {
-                let lanes: [Side; LANES] = array::from_fn(|i| chunk[i.min(chunk.len() - 1)]);
-                rows.push(lanes.map(|side| side.to));
-                left.push(lanes.map(|side| face(side.half_edge)));
-                right.push(lanes.map(|side| face(surface.twin(side.half_edge))));
+            let around = surface.leaving(v);
+            for chunk in around.chunks(LANES) {
+                let sides = array::from_fn(|i| chunk.get(i).unwrap_or(&around[0]));
+                rows.push(Row {
+                    to: sides.map(|side| side.to),
+                    left: sides.map(|side| face_of[triangle(side.half_edge)]),
+                });
             }
             first.push(rows.len() as u32);
         }
         Self {
             first: first.into(),
             rows: rows.into(),
-            left: left.into(),
-            right: right.into(),
         }
     }
 
-    /// The neighbours of a vertex, in fours; the last may be repeated.
+    /// The neighbours of a vertex, in fours; the first may be repeated.
     #[inline]
-    pub fn rows(&self, vertex: VertexId) -> &[[u16; LANES]] {
+    pub fn rows(&self, vertex: VertexId) -> &[Row] {
         let v = vertex as usize;
         &self.rows[self.first[v] as usize..self.first[v + 1] as usize]
     }
 
-    /// The neighbours of a vertex; the last may be repeated.
+    /// The neighbours of a vertex; the first may be repeated.
     #[inline]
-    pub fn neighbors(&self, vertex: VertexId) -> &[u16] {
-        self.rows(vertex).as_flattened()
+    pub fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = u16> {
+        self.rows(vertex).iter().flat_map(|row| row.to)
     }
 
-    /// The faces around a vertex, some of them more than once.
+    /// The faces around a vertex, in fours, some of them more than once.
     #[inline]
-    pub fn faces_at(&self, vertex: VertexId) -> &[u16] {
-        let v = vertex as usize;
-        self.left[self.first[v] as usize..self.first[v + 1] as usize].as_flattened()
+    pub fn faces_at(&self, vertex: VertexId) -> impl Iterator<Item = [u16; LANES]> + Clone {
+        self.rows(vertex).iter().map(|row| row.left)
     }
 
     /// The name of an edge, the same for both directions.
@@ -78,46 +80,52 @@ impl EdgeGraph {
     /// would end is not predictable.
     #[inline]
     fn place(&self, from: VertexId, to: VertexId) -> Option<usize> {
-        let around = self.neighbors(from);
-        let mut place = around.len();
-        for (i, &w) in around.iter().enumerate().rev() {
-            place = if VertexId::from(w) == to { i } else { place };
+        let rows = self.rows(from);
+        let none = rows.len() * LANES;
+        let mut place = none;
+        for (r, row) in rows.iter().enumerate().rev() {
+            for (lane, &w) in row.to.iter().enumerate().rev() {
+                let here = r * LANES + lane;
+                place = if VertexId::from(w) == to { here } else { place };
+            }
         }
-        (place < around.len()).then_some(place)
+        (place < none).then_some(place)
     }
 
     /// The end vertices of an edge.
     #[inline]
     pub fn edge(&self, id: u32) -> Option<[VertexId; 2]> {
-        let (from, row, lane) = self.locate(id)?;
-        Some([from, self.rows[row][lane].into()])
+        let (from, place) = split(id);
+        let row = self.rows_of(from)?.get(place / LANES)?;
+        Some([from, row.to[place % LANES].into()])
     }
 
     /// The faces on both sides of an edge.
     #[inline]
     pub fn faces_beside(&self, id: u32) -> Option<[u16; 2]> {
-        let (_, row, lane) = self.locate(id)?;
-        Some([self.left[row][lane], self.right[row][lane]])
+        let (from, place) = split(id);
+        let rows = self.rows_of(from)?;
+        let left = |place: usize| rows.get(place / LANES).map(|row| row.left[place % LANES]);
+        Some([left(place)?, left(place + 1).or_else(|| left(0))?])
     }
 
-    /// The lower vertex of an edge, and where the other one is among the rows.
+    /// As [`rows`](Self::rows), of a vertex that there may not be.
     #[inline]
-    fn locate(&self, id: u32) -> Option<(VertexId, usize, usize)> {
-        let (from, place) = (id >> PLACE_BITS, (id & ((1 << PLACE_BITS) - 1)) as usize);
-        let (start, end) = (
-            *self.first.get(from as usize)?,
-            *self.first.get(from as usize + 1)?,
-        );
-        let row = start as usize + place / LANES;
-        (row < end as usize).then_some((from, row, place % LANES))
+    fn rows_of(&self, vertex: VertexId) -> Option<&[Row]> {
+        let v = vertex as usize;
+        let (start, end) = (*self.first.get(v)?, *self.first.get(v + 1)?);
+        self.rows.get(start as usize..end as usize)
     }
 
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.first)
-            + size_of_val(&*self.rows)
-            + size_of_val(&*self.left)
-            + size_of_val(&*self.right)
+        size_of_val(&*self.first) + size_of_val(&*self.rows)
     }
+}
+
+/// The lower vertex of an edge, and its place there.
+#[inline]
+fn split(id: u32) -> (VertexId, usize) {
+    (id >> PLACE_BITS, (id & ((1 << PLACE_BITS) - 1)) as usize)
 }
 
 /// The name that the graph of a surface gives to an edge.

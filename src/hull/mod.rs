@@ -119,10 +119,10 @@ impl Polytope for Hull {
         self.points[vertex as usize].as_dvec3()
     }
 
-    /// The neighbours on the triangulated surface; the last may be repeated.
+    /// The neighbours on the triangulated surface; the first may be repeated.
     #[inline]
     fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
-        self.graph.neighbors(vertex).iter().map(|&v| v.into())
+        self.graph.neighbors(vertex).map(|v| v.into())
     }
 
     #[inline]
@@ -158,7 +158,7 @@ impl Polytope for Hull {
     #[inline]
     fn face_beside(&self, edge: u32, dir: DVec3) -> FaceId {
         match self.graph.faces_beside(edge) {
-            Some(pair) => self.faces.most_aligned(&pair, dir),
+            Some(pair) => self.faces.most_aligned([pair], dir),
             None => self.face_at(0, dir),
         }
     }

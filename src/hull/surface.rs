@@ -16,7 +16,7 @@ pub(super) struct Side {
 /// Triangles, counter-clockwise seen from outside, that form one sphere.
 pub(super) struct Surface<'a> {
     pub triangles: &'a [[u32; 3]],
-    /// By start, then by end; those that leave vertex `v` are `first[v]..first[v + 1]`.
+    /// Those that leave vertex `v` are `first[v]..first[v + 1]`, clockwise seen from outside.
     sides: Vec<Side>,
     first: Vec<u32>,
     /// Where each half-edge stands in `sides`.
@@ -38,25 +38,23 @@ impl<'a> Surface<'a> {
         let (by_start, _) = sort(&all, count, |side| side.from);
         let (reversed, _) = sort(&by_start, count, |side| side.to);
         let mut twin = vec![0; all.len()];
-        let mut position = vec![0; all.len()];
         let mut before = None;
-        for (i, (side, reverse)) in sides.iter().zip(&reversed).enumerate() {
+        for (side, reverse) in sides.iter().zip(&reversed) {
             let ends = (side.from, side.to);
             if ends != (reverse.to, reverse.from) || before == Some(ends) {
                 return Err(HullError::NotManifold);
             }
             before = Some(ends);
             twin[side.half_edge as usize] = reverse.half_edge;
-            position[side.half_edge as usize] = i as u32;
         }
-        let surface = Self {
+        let mut surface = Self {
             triangles,
             sides,
             first,
-            position,
+            position: vec![0; all.len()],
             twin,
         };
-        if surface.is_sphere() {
+        if surface.sort_fans() && surface.is_sphere() {
             Ok(surface)
         } else {
             Err(HullError::NotManifold)
@@ -82,7 +80,8 @@ impl<'a> Surface<'a> {
         self.twin[h as usize]
     }
 
-    /// The sides that leave a vertex, by where they end.
+    /// The sides that leave a vertex, clockwise: right of each of them is the triangle left of the
+    /// next one.
     #[inline]
     pub fn leaving(&self, vertex: u32) -> &[Side] {
         let v = vertex as usize;
@@ -95,8 +94,30 @@ impl<'a> Surface<'a> {
         self.position[h as usize] - self.first[self.start(h) as usize]
     }
 
-    /// Euler's number is that of a sphere, all of it hangs together, and around each vertex the
-    /// triangles form one fan.
+    /// Brings the sides around each vertex into their order, from that to the lowest vertex on.
+    /// `false` if the triangles around a vertex are not one fan.
+    fn sort_fans(&mut self) -> bool {
+        (0..self.vertex_count()).all(|v| {
+            let [start, end] = [v, v + 1].map(|v| self.first[v] as usize);
+            let first = self.sides[start].half_edge;
+            let mut h = first;
+            for place in start..end {
+                if h == first && place > start {
+                    return false;
+                }
+                self.sides[place] = Side {
+                    from: v as u16,
+                    to: self.end(h) as u16,
+                    half_edge: h,
+                };
+                self.position[h as usize] = place as u32;
+                h = next(self.twin(h));
+            }
+            h == first
+        })
+    }
+
+    /// Euler's number is that of a sphere, and all of it hangs together.
     fn is_sphere(&self) -> bool {
         let count = self.vertex_count();
         if self.triangles.len() + 4 != 2 * count {
@@ -108,16 +129,9 @@ impl<'a> Surface<'a> {
         let mut reached = 0;
         while let Some(v) = stack.pop() {
             reached += 1;
-            let around = self.leaving(v);
-            let first = around[0].half_edge;
-            let mut h = first;
-            for (turn, side) in around.iter().enumerate() {
+            for side in self.leaving(v) {
                 if !std::mem::replace(&mut seen[side.to as usize], true) {
                     stack.push(side.to.into());
-                }
-                h = next(self.twin(h));
-                if (h == first) != (turn + 1 == around.len()) {
-                    return false;
                 }
             }
         }
