@@ -58,6 +58,7 @@ impl Simplex {
     }
 
     /// The point nearest to `x`, relative to `x`; its face and weights refer to slots.
+    #[inline(always)]
     pub(crate) fn nearest<S: DistanceSubalgorithm>(&self, x: DVec3) -> Nearest {
         let mut points = [DVec3::ZERO; 4];
         let mut slots = [0; 4];

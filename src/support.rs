@@ -127,7 +127,7 @@ pub struct Cso<'a, A, B> {
 
 impl<A: Support, B: Support> Cso<'_, A, B> {
     /// A point that is extreme in direction `dir`, the two climbs starting at `start`.
-    #[inline]
+    #[inline(always)]
     pub fn support(&self, dir: DVec3, start: [VertexId; 2], cost: &mut Cost) -> CsoVertex {
         let (on_1, id_1) = self.shape_1.support(dir, start[0], cost);
         let (on_2, id_2) = self

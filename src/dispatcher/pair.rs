@@ -6,7 +6,6 @@ use glam::DVec3;
 use parry3d::math::Real;
 use parry3d::shape::{Segment as ParrySegment, Shape, ShapeType, Triangle};
 
-use super::cache;
 use super::hulls::{EachProved, Find, HullRef, HullTable};
 use crate::epa::EpaScratch;
 use crate::hull::Hull;
@@ -28,33 +27,25 @@ thread_local! {
     static WORKBENCH: RefCell<Workbench> = RefCell::default();
 }
 
-/// A polytope with a rounded border of this radius around it.
-struct Solid<'a> {
-    core: Core<'a>,
+/// A hull with a rounded border of this radius around it.
+struct Prepared<'a> {
+    place: Place<'a>,
     border: f64,
 }
 
-enum Core<'a> {
-    /// The prepared hull that a shape brings along.
-    Hull(&'a Hull),
-    /// The one that was prepared for a shape.
+enum Place<'a> {
+    /// The shape brings it along.
+    Own(&'a Hull),
+    /// It was prepared for the shape.
     Found(HullRef),
-    Cuboid(CuboidPolytope),
-    Triangle(TrianglePolytope),
-    Ball(Ball),
-    Segment(Segment),
-    /// A half-space, by its outward unit normal.
-    HalfSpace(DVec3),
 }
 
-impl<'a> Core<'a> {
-    /// The hull, if it is one.
+impl<'a> Prepared<'a> {
     #[inline]
     fn hull(&self, table: &'a HullTable) -> Option<&'a Hull> {
-        match self {
-            Self::Hull(hull) => Some(hull),
-            Self::Found(place) => table.get(*place),
-            _ => None,
+        match self.place {
+            Place::Own(hull) => Some(hull),
+            Place::Found(place) => table.get(place),
         }
     }
 }
@@ -123,6 +114,27 @@ impl<'a> Side<'a, EachProved> {
     }
 }
 
+impl<'a, F: Find<'a>> Side<'a, F> {
+    /// The hull, if the shape is one.
+    #[inline(always)]
+    fn prepare(&mut self, shape_type: ShapeType, table: &mut HullTable) -> Option<Prepared<'a>> {
+        let (place, border) = match shape_type {
+            ShapeType::ConvexPolyhedron => {
+                let polyhedron = self.shape.as_convex_polyhedron()?;
+                (Place::Found(self.find.find(table, polyhedron)?), 0.0)
+            }
+            ShapeType::RoundConvexPolyhedron => {
+                let round = self.shape.as_round_convex_polyhedron()?;
+                let place = self.find.find(table, &round.inner_shape)?;
+                (Place::Found(place), round.border_radius.into())
+            }
+            ShapeType::Custom => (Place::Own(self.shape.as_shape::<HullShape>()?.hull()), 0.0),
+            _ => return None,
+        };
+        Some(Prepared { place, border })
+    }
+}
+
 /// Visits the pair if one of its shapes is a hull and the other one known; else `None`.
 #[inline]
 pub(super) fn visit<V: PairVisitor>(
@@ -136,100 +148,116 @@ pub(super) fn visit<V: PairVisitor>(
 /// As [`visit`], for pairs of parts.
 #[inline]
 pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
-    side_1: Side<'a, impl Find<'a>>,
-    side_2: Side<'b, impl Find<'b>>,
+    mut side_1: Side<'a, impl Find<'a>>,
+    mut side_2: Side<'b, impl Find<'b>>,
     visitor: V,
 ) -> Option<V::Output> {
     let types = [side_1.shape.shape_type(), side_2.shape.shape_type()];
     if !is_hull(side_1.shape, types[0]) && !is_hull(side_2.shape, types[1]) {
         return None;
     }
-    WORKBENCH.with_borrow_mut(|bench| {
-        bench.hulls.make_room();
-        let solid_1 = solid(side_1, types[0], &mut bench.hulls)?;
-        let solid_2 = solid(side_2, types[1], &mut bench.hulls)?;
-        let hulls = [&solid_1, &solid_2].map(|solid| solid.core.hull(&bench.hulls));
-        let (hull, other, swapped) = match hulls {
-            [Some(hull), _] => (hull, &solid_2, false),
-            [None, Some(hull)] => (hull, &solid_1, true),
-            [None, None] => return None,
-        };
-        let borders = cache::ordered([solid_1.border, solid_2.border], swapped);
-        let scratch = &mut Scratch {
-            epa: &mut bench.epa,
-            clip: &mut bench.clip,
-        };
-        Some(match (&other.core, hulls) {
-            (_, [Some(_), Some(second)]) => visitor.visit(hull, second, borders, false, scratch),
-            (Core::Cuboid(cuboid), _) => visitor.visit(hull, cuboid, borders, swapped, scratch),
-            (Core::Triangle(triangle), _) => {
-                visitor.visit(hull, triangle, borders, swapped, scratch)
+    WORKBENCH.with_borrow_mut(|Workbench { hulls, epa, clip }| {
+        hulls.make_room();
+        let hull_1 = side_1.prepare(types[0], hulls);
+        let hull_2 = side_2.prepare(types[1], hulls);
+        let scratch = &mut Scratch { epa, clip };
+        match (hull_1, hull_2) {
+            (Some(first), Some(second)) => {
+                let borders = [first.border, second.border];
+                let (first, second) = (first.hull(hulls)?, second.hull(hulls)?);
+                Some(visitor.visit(first, second, borders, false, scratch))
             }
-            (Core::Ball(ball), _) => visitor.visit(hull, ball, borders, swapped, scratch),
-            (Core::Segment(segment), _) => visitor.visit(hull, segment, borders, swapped, scratch),
-            (Core::HalfSpace(normal), _) => {
-                visitor.visit_half_space(hull, *normal, borders[0], swapped, scratch)
+            (Some(hull), None) => {
+                let (border, hull) = (hull.border, hull.hull(hulls)?);
+                let other = Other::of(side_2.shape, types[1])?;
+                Some(other.accept(visitor, hull, border, false, scratch))
             }
-            (Core::Hull(_) | Core::Found(_), _) => return None,
-        })
+            (None, Some(hull)) => {
+                let (border, hull) = (hull.border, hull.hull(hulls)?);
+                let other = Other::of(side_1.shape, types[0])?;
+                Some(other.accept(visitor, hull, border, true, scratch))
+            }
+            (None, None) => None,
+        }
     })
 }
 
-fn solid<'a>(
-    Side { shape, mut find }: Side<'a, impl Find<'a>>,
-    shape_type: ShapeType,
-    hulls: &mut HullTable,
-) -> Option<Solid<'a>> {
-    let (core, border) = match shape_type {
-        ShapeType::Custom => (Core::Hull(shape.as_shape::<HullShape>()?.hull()), 0.0),
-        ShapeType::ConvexPolyhedron => {
-            let polyhedron = shape.as_convex_polyhedron()?;
-            (Core::Found(find.find(hulls, polyhedron)?), 0.0)
+/// A shape that is no hull, with a rounded border of this radius around it.
+struct Other {
+    core: Core,
+    border: f64,
+}
+
+enum Core {
+    Cuboid(CuboidPolytope),
+    Triangle(TrianglePolytope),
+    Ball(Ball),
+    Segment(Segment),
+    /// A half-space, by its outward unit normal.
+    HalfSpace(DVec3),
+}
+
+impl Other {
+    fn of(shape: &dyn Shape, shape_type: ShapeType) -> Option<Self> {
+        let (core, border) = match shape_type {
+            ShapeType::Cuboid => {
+                let extents = shape.as_cuboid()?.half_extents;
+                (cuboid(extents.as_dvec3())?, 0.0)
+            }
+            ShapeType::RoundCuboid => {
+                let round = shape.as_round_cuboid()?;
+                let extents = round.inner_shape.half_extents.as_dvec3();
+                (cuboid(extents)?, round.border_radius)
+            }
+            ShapeType::Triangle => (triangle(shape.as_triangle()?)?, 0.0),
+            ShapeType::RoundTriangle => {
+                let round = shape.as_round_triangle()?;
+                (triangle(&round.inner_shape)?, round.border_radius)
+            }
+            ShapeType::Ball => {
+                let radius = shape.as_ball()?.radius;
+                (Core::Ball(Ball::new(positive(radius)?)), radius)
+            }
+            ShapeType::Capsule => {
+                let capsule = shape.as_capsule()?;
+                (segment(&capsule.segment, capsule.radius)?, capsule.radius)
+            }
+            ShapeType::Segment => (segment(shape.as_segment()?, 0.0)?, 0.0),
+            ShapeType::HalfSpace => {
+                let normal = shape.as_halfspace()?.normal.as_dvec3();
+                (Core::HalfSpace(normal.try_normalize()?), 0.0)
+            }
+            _ => return None,
+        };
+        Some(Self {
+            core,
+            border: border.into(),
+        })
+    }
+
+    fn accept<V: PairVisitor>(
+        &self,
+        visitor: V,
+        hull: &Hull,
+        border: f64,
+        swapped: bool,
+        scratch: &mut Scratch<'_>,
+    ) -> V::Output {
+        let borders = [border, self.border];
+        match &self.core {
+            Core::Cuboid(cuboid) => visitor.visit(hull, cuboid, borders, swapped, scratch),
+            Core::Triangle(triangle) => visitor.visit(hull, triangle, borders, swapped, scratch),
+            Core::Ball(ball) => visitor.visit(hull, ball, borders, swapped, scratch),
+            Core::Segment(segment) => visitor.visit(hull, segment, borders, swapped, scratch),
+            Core::HalfSpace(normal) => {
+                visitor.visit_half_space(hull, *normal, border, swapped, scratch)
+            }
         }
-        ShapeType::RoundConvexPolyhedron => {
-            let round = shape.as_round_convex_polyhedron()?;
-            (
-                Core::Found(find.find(hulls, &round.inner_shape)?),
-                round.border_radius,
-            )
-        }
-        ShapeType::Cuboid => {
-            let extents = shape.as_cuboid()?.half_extents;
-            (cuboid(extents.as_dvec3())?, 0.0)
-        }
-        ShapeType::RoundCuboid => {
-            let round = shape.as_round_cuboid()?;
-            let extents = round.inner_shape.half_extents.as_dvec3();
-            (cuboid(extents)?, round.border_radius)
-        }
-        ShapeType::Triangle => (triangle(shape.as_triangle()?)?, 0.0),
-        ShapeType::RoundTriangle => {
-            let round = shape.as_round_triangle()?;
-            (triangle(&round.inner_shape)?, round.border_radius)
-        }
-        ShapeType::Ball => {
-            let radius = shape.as_ball()?.radius;
-            (Core::Ball(Ball::new(positive(radius)?)), radius)
-        }
-        ShapeType::Capsule => {
-            let capsule = shape.as_capsule()?;
-            (segment(&capsule.segment, capsule.radius)?, capsule.radius)
-        }
-        ShapeType::Segment => (segment(shape.as_segment()?, 0.0)?, 0.0),
-        ShapeType::HalfSpace => {
-            let normal = shape.as_halfspace()?.normal.as_dvec3();
-            (Core::HalfSpace(normal.try_normalize()?), 0.0)
-        }
-        _ => return None,
-    };
-    Some(Solid {
-        core,
-        border: border.into(),
-    })
+    }
 }
 
 /// `None` for a box that is a segment or a point: it has no faces with a plane.
-fn cuboid(half_extents: DVec3) -> Option<Core<'static>> {
+fn cuboid(half_extents: DVec3) -> Option<Core> {
     let thin = half_extents.cmple(DVec3::splat(THINNEST * half_extents.max_element()));
     (thin.bitmask().count_ones() < 2).then(|| Core::Cuboid(CuboidPolytope::new(half_extents)))
 }
@@ -239,13 +267,13 @@ fn positive(length: Real) -> Option<f64> {
     (length > 0.0 && length.is_finite()).then(|| length.into())
 }
 
-fn segment(segment: &ParrySegment, border: Real) -> Option<Core<'static>> {
+fn segment(segment: &ParrySegment, border: Real) -> Option<Core> {
     positive(segment.length() + border)?;
     let ends = [segment.a, segment.b].map(|p| p.as_dvec3());
     Some(Core::Segment(Segment::new(ends, border.into())))
 }
 
-fn triangle(triangle: &Triangle) -> Option<Core<'static>> {
+fn triangle(triangle: &Triangle) -> Option<Core> {
     let corners = [triangle.a, triangle.b, triangle.c].map(|p| p.as_dvec3());
     TrianglePolytope::new(corners).map(Core::Triangle)
 }

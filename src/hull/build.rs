@@ -9,7 +9,7 @@ use super::graph::EdgeGraph;
 use super::scan::Scan;
 use super::start::StartTable;
 use super::surface::{Surface, next};
-use super::{Hull, HullError};
+use super::{Hull, HullError, Search};
 use crate::stats::Cost;
 use crate::support::{FaceId, Polytope};
 use crate::tolerance::{CONVEXITY, FOLD, THINNEST};
@@ -64,24 +64,28 @@ impl Hull {
         let (mut faces, face_of) = Faces::new(&exact, &surface, radius);
         let graph = EdgeGraph::new(&surface, &face_of);
         faces.add_caps(&exact, &graph);
-        let face_len = |f: u16| faces.polygon(f.into()).len();
-        let fragile = climb::fragile(&exact, &graph, radius, face_len);
-        let slope = Slope {
-            points: &points,
-            graph: &graph,
-            fragile: &fragile,
-            radius,
+        let search = match Scan::new(&points) {
+            Some(scan) => Search::Scan(scan),
+            None => {
+                let face_len = |f: u16| faces.polygon(f.into()).len();
+                let fragile = climb::fragile(&exact, &graph, radius, face_len);
+                let slope = Slope {
+                    points: &points,
+                    graph: &graph,
+                    fragile: &fragile,
+                    radius,
+                };
+                let start = StartTable::new(points.len(), |dir, start| {
+                    climb::extreme_vertex(slope, dir, start, &mut Cost::default())
+                });
+                Search::Climb { start, fragile }
+            }
         };
-        let start = StartTable::new(points.len(), |dir, start| {
-            climb::support(slope, dir, start, &mut Cost::default()).1
-        });
         let hull = Self {
-            scan: Scan::new(&points),
             points: points.into(),
+            search,
             graph,
             faces,
-            start,
-            fragile,
             center,
             radius,
         };

@@ -39,12 +39,12 @@ pub(super) struct Slope<'a> {
 
 /// The extreme vertex in direction `dir`, climbing from `start`.
 #[inline]
-pub(super) fn support(
+pub(super) fn extreme_vertex(
     slope: Slope<'_>,
     dir: DVec3,
     start: VertexId,
     cost: &mut Cost,
-) -> (DVec3, VertexId) {
+) -> VertexId {
     let mut at = start;
     let mut value = slope.height(dir, at);
     loop {
@@ -66,7 +66,7 @@ pub(super) fn support(
             cost.climb_moves += 1;
             continue;
         }
-        return (slope.points[at as usize].as_dvec3(), at);
+        return at;
     }
 }
 

@@ -33,14 +33,24 @@ use start::StartTable;
 #[derive(Clone, Debug)]
 pub struct Hull {
     points: Box<[Vec3]>,
-    /// Of a small hull.
-    scan: Option<Scan>,
+    search: Search,
     graph: EdgeGraph,
     faces: Faces,
-    start: StartTable,
-    fragile: Box<[bool]>,
     center: DVec3,
     radius: f64,
+}
+
+/// How extreme vertices are found.
+#[derive(Clone, Debug)]
+enum Search {
+    /// In a small hull, by looking at all.
+    Scan(Scan),
+    /// By hill climbing.
+    Climb {
+        start: StartTable,
+        /// See [`climb::fragile`].
+        fragile: Box<[bool]>,
+    },
 }
 
 impl Hull {
@@ -60,37 +70,47 @@ impl Hull {
     /// bytes for the start table. Joined faces cost less, uneven numbers of neighbours a few bytes
     /// more, and hulls that are scanned 16 more per vertex.
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.points)
-            + self.scan.as_ref().map_or(0, Scan::heap_bytes)
-            + self.graph.heap_bytes()
-            + self.faces.heap_bytes()
-            + self.start.heap_bytes()
-            + size_of_val(&*self.fragile)
+        let search = match &self.search {
+            Search::Scan(scan) => scan.heap_bytes(),
+            Search::Climb { start, fragile } => start.heap_bytes() + size_of_val(&**fragile),
+        };
+        size_of_val(&*self.points) + search + self.graph.heap_bytes() + self.faces.heap_bytes()
+    }
+
+    /// The extreme vertex in a direction. The coordinates one by one come in registers: a vector
+    /// that was written to memory by coordinates and is read in pairs is waited for.
+    #[inline(never)]
+    fn extreme_vertex(&self, x: f64, y: f64, z: f64, start: VertexId, cost: &mut Cost) -> VertexId {
+        let dir = DVec3::new(x, y, z);
+        match &self.search {
+            Search::Scan(scan) => scan.highest(dir),
+            Search::Climb { fragile, .. } => {
+                let slope = Slope {
+                    points: &self.points,
+                    graph: &self.graph,
+                    fragile,
+                    radius: self.radius,
+                };
+                climb::extreme_vertex(slope, dir, start, cost)
+            }
+        }
     }
 }
 
 impl Support for Hull {
-    #[inline]
+    #[inline(always)]
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
         cost.supports += 1;
-        if let Some(scan) = &self.scan {
-            let (highest, height) = scan.highest(dir);
-            let rises = height > dir.dot(self.vertex(start));
-            let vertex = if rises { highest } else { start };
-            return (self.vertex(vertex), vertex);
-        }
-        let slope = Slope {
-            points: &self.points,
-            graph: &self.graph,
-            fragile: &self.fragile,
-            radius: self.radius,
-        };
-        climb::support(slope, dir, start, cost)
+        let vertex = self.extreme_vertex(dir.x, dir.y, dir.z, start, cost);
+        (self.vertex(vertex), vertex)
     }
 
     #[inline]
     fn start(&self, dir: DVec3) -> VertexId {
-        self.start.lookup(dir)
+        match &self.search {
+            Search::Scan(_) => 0,
+            Search::Climb { start, .. } => start.lookup(dir),
+        }
     }
 
     #[inline]

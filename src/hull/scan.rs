@@ -32,16 +32,16 @@ impl Scan {
         })
     }
 
-    /// The extreme vertex in direction `dir`, and its height. (Of vertices that tie the one in the
-    /// lower lane: that is none that fills up.)
+    /// The extreme vertex in direction `dir`. (Of vertices that tie the one in the lower lane: that is
+    /// none that fills up.)
     #[inline]
-    pub fn highest(&self, dir: DVec3) -> (VertexId, f64) {
+    pub fn highest(&self, dir: DVec3) -> VertexId {
         let mut highest = Highest::new(dir);
         for (number, &four) in self.fours.iter().enumerate() {
             highest.look_at(number, four);
         }
         let top = highest.top();
-        ((top.four * LANES + top.lane) as VertexId, top.height)
+        (top.four * LANES + top.lane) as VertexId
     }
 
     pub fn heap_bytes(&self) -> usize {
