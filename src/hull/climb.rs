@@ -22,7 +22,7 @@
 use glam::{DVec3, Vec3};
 
 use super::graph::EdgeGraph;
-use super::top::{Highest, coordinates};
+use super::top::{Highest, LANES, coordinates};
 use crate::stats::Cost;
 use crate::support::VertexId;
 use crate::tolerance::{LARGE_FACE, PLATEAU, SHORT_EDGE};
@@ -38,7 +38,7 @@ pub(super) struct Slope<'a> {
 }
 
 /// The extreme vertex in direction `dir`, climbing from `start`.
-#[inline]
+#[inline(always)]
 pub(super) fn extreme_vertex(
     slope: Slope<'_>,
     dir: DVec3,
@@ -87,7 +87,8 @@ impl Slope<'_> {
             highest.look_at(number, coordinates(corners));
         }
         let top = highest.top();
-        (rows[top.four].to[top.lane].into(), top.height)
+        let row = &rows[top.place / LANES];
+        (row.to[top.place % LANES].into(), top.height)
     }
 
     /// A vertex above the plateau around `start`, or `None` if the plateau is the maximum.

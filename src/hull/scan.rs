@@ -15,7 +15,7 @@ const LARGEST: usize = 16;
 /// The vertices of a small hull, coordinate by coordinate in fours.
 #[derive(Clone, Debug)]
 pub(super) struct Scan {
-    /// The last one is filled up with the last vertex.
+    /// The last one is filled up with its first vertex, which wins a tie with its copies.
     fours: Box<[[[f32; LANES]; 3]]>,
 }
 
@@ -25,23 +25,21 @@ impl Scan {
         (points.len() <= LARGEST).then(|| {
             let fours = points
                 .chunks(LANES)
-                .map(|chunk| coordinates(array::from_fn(|i| chunk[i.min(chunk.len() - 1)])));
+                .map(|chunk| coordinates(array::from_fn(|i| *chunk.get(i).unwrap_or(&chunk[0]))));
             Self {
                 fours: fours.collect(),
             }
         })
     }
 
-    /// The extreme vertex in direction `dir`. (Of vertices that tie the one in the lower lane: that is
-    /// none that fills up.)
+    /// The extreme vertex in direction `dir`.
     #[inline]
     pub fn highest(&self, dir: DVec3) -> VertexId {
         let mut highest = Highest::new(dir);
         for (number, &four) in self.fours.iter().enumerate() {
             highest.look_at(number, four);
         }
-        let top = highest.top();
-        (top.four * LANES + top.lane) as VertexId
+        highest.top().place as VertexId
     }
 
     pub fn heap_bytes(&self) -> usize {

@@ -1,7 +1,7 @@
 //! The highest of many points in a direction, found four at a time.
 
 use glam::{DVec3, Vec3};
-use wide::f64x4;
+use wide::{f64x2, f64x4, u64x4};
 
 /// Points are looked at in fours, so that there is no branch for each.
 pub(super) const LANES: usize = 4;
@@ -10,15 +10,14 @@ pub(super) const LANES: usize = 4;
 pub(super) struct Highest {
     dir: [f64x4; 3],
     heights: f64x4,
-    /// The number of the four that each comes from: bits of a whole number, since lanes are selected
-    /// together with those of the heights.
-    fours: f64x4,
+    /// Which point each height is of: bits of whole numbers, since lanes are selected together with
+    /// those of the heights.
+    places: f64x4,
 }
 
-/// The highest point: the number of its four, its lane there, and its height.
+/// The highest point: its place among all that were looked at, and its height.
 pub(super) struct Top {
-    pub four: usize,
-    pub lane: usize,
+    pub place: usize,
     pub height: f64,
 }
 
@@ -28,31 +27,35 @@ impl Highest {
         Self {
             dir: dir.to_array().map(f64x4::splat),
             heights: f64x4::splat(f64::NEG_INFINITY),
-            fours: f64x4::ZERO,
+            places: f64x4::ZERO,
         }
     }
 
-    /// Looks at four points, coordinate by coordinate.
+    /// Looks at the four points, coordinate by coordinate, that have this number.
     #[inline(always)]
     pub fn look_at(&mut self, number: usize, coordinates: [[f32; LANES]; 3]) {
         let [x, y, z] = coordinates.map(|lanes| f64x4::new(lanes.map(f64::from)));
         let heights = x * self.dir[0] + y * self.dir[1] + z * self.dir[2];
         let higher = heights.simd_gt(self.heights);
-        let number = f64x4::splat(f64::from_bits(number as u64));
+        let places = u64x4::splat((number * LANES) as u64) + u64x4::new([0, 1, 2, 3]);
         self.heights = higher.bitselect(heights, self.heights);
-        self.fours = higher.bitselect(number, self.fours);
+        self.places = higher.bitselect(bytemuck::cast(places), self.places);
     }
 
-    /// Of points that tie in different lanes the one in the lower lane.
+    /// Of points that tie one in the lowest lane, if any of them is there. (Halves against each other
+    /// and then their lanes: a search lane by lane is half as long again as all the rest.)
     #[inline(always)]
     pub fn top(self) -> Top {
-        let (heights, fours) = (self.heights.to_array(), self.fours.to_array());
-        let higher = |i: usize, j: usize| if heights[j] > heights[i] { j } else { i };
-        let lane = higher(higher(0, 1), higher(2, 3));
+        let [low, high]: [f64x2; 2] = bytemuck::cast(self.heights);
+        let [low_places, high_places]: [f64x2; 2] = bytemuck::cast(self.places);
+        let higher = high.simd_gt(low);
+        let heights = higher.bitselect(high, low).to_array();
+        let places = higher.bitselect(high_places, low_places).to_array();
+        let second = heights[1] > heights[0];
+        let place = if second { places[1] } else { places[0] };
         Top {
-            four: fours[lane].to_bits() as usize,
-            lane,
-            height: heights[lane],
+            place: place.to_bits() as usize,
+            height: if second { heights[1] } else { heights[0] },
         }
     }
 }
