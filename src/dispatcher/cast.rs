@@ -11,7 +11,7 @@ use crate::hull::Hull;
 use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Query};
 use crate::ray_cast::{Impact, RayCast, ray_cast};
-use crate::simplex::Voronoi;
+use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{Cso, Polytope};
 use crate::tolerance::{GRAZING, RAY_TOUCHING};
@@ -72,7 +72,7 @@ impl PairVisitor for Cast<'_> {
         } else {
             velocity
         };
-        let impact = ray_cast::<Voronoi, _, _>(
+        let impact = ray_cast::<Preferred, _, _>(
             &cso,
             velocity,
             self.options.max_time_of_impact.into(),

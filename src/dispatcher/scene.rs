@@ -14,7 +14,7 @@ use crate::gjk::{self, Closest, Outcome};
 use crate::hull::Hull;
 use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Proximity, Query};
-use crate::simplex::Voronoi;
+use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{Cso, Polytope};
 
@@ -177,7 +177,7 @@ impl PairVisitor for SeparationQuery<'_> {
             Ok(_) => return Some(Separation::Beyond),
             Err(vertex) => vertex,
         };
-        let outcome = gjk::distance::<Voronoi, _, _>(&cso, &[vertex], max_distance, cost);
+        let outcome = gjk::distance::<Preferred, _, _>(&cso, &[vertex], max_distance, cost);
         Some(match outcome {
             Outcome::Apart(_) => Separation::Beyond,
             Outcome::Overlap(_) => Separation::None,

@@ -14,7 +14,7 @@ mod seed;
 
 use glam::DVec3;
 
-use crate::simplex::{DistanceSubalgorithm, Voronoi};
+use crate::simplex::{DistanceSubalgorithm, Preferred};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Support};
 use crate::tolerance::DEPTH_GAP;
@@ -134,7 +134,7 @@ pub enum Depth {
 fn witness(face: [CsoVertex; 3], normal: DVec3, [lower_bound, depth]: [f64; 2]) -> Penetration {
     // Measured from the foot of the normal, so that the depth does not swamp the position.
     let foot = normal * depth;
-    let nearest = Voronoi::nearest(&face.map(|v| v.w - foot));
+    let nearest = Preferred::nearest(&face.map(|v| v.w - foot));
     let combine = |on: fn(&CsoVertex) -> DVec3| -> DVec3 {
         let weighted = face.iter().zip(nearest.lambda);
         weighted.map(|(vertex, weight)| on(vertex) * weight).sum()

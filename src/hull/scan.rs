@@ -10,7 +10,7 @@ use crate::support::VertexId;
 
 /// Up to so many vertices a scan is the quicker one: it takes 9 % off the narrow phase of tumbling
 /// hulls of 10 vertices and 3 % at 16, and adds 2 % at 32.
-const LARGEST: usize = 16;
+const LARGEST: usize = 40;
 
 /// The vertices of a small hull, coordinate by coordinate in fours.
 #[derive(Clone, Debug)]

@@ -8,7 +8,7 @@ use parry3d::shape::{FeatureId, SupportMap};
 use super::HullShape;
 use crate::gjk::{self, Outcome};
 use crate::pose::RelativePose;
-use crate::simplex::Voronoi;
+use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{Cso, FaceId, Polytope, Support, VertexId};
 
@@ -51,7 +51,7 @@ impl HullShape {
         let cost = &mut Cost::default();
         let toward = point.as_dvec3() - cso.shape_1.center();
         let first = cso.support(toward, cso.start(toward), cost);
-        match gjk::distance::<Voronoi, _, _>(&cso, &[first], f64::INFINITY, cost) {
+        match gjk::distance::<Preferred, _, _>(&cso, &[first], f64::INFINITY, cost) {
             Outcome::Near(closest) => (
                 PointProjection::new(false, closest.on_1.as_vec3()),
                 self.feature_toward(closest.normal),

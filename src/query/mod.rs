@@ -22,7 +22,7 @@ use glam::DVec3;
 
 use crate::epa::{self, Depth, EpaScratch, Penetration};
 use crate::gjk::{self, Closest, Outcome, SeparatingAxis};
-use crate::simplex::Voronoi;
+use crate::simplex::Preferred;
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 use crate::tolerance::DEPTH_GAP;
@@ -162,7 +162,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
 
     /// GJK from vertices of the Minkowski difference, and EPA if the shapes overlap.
     fn run_gjk(&mut self, start: &[CsoVertex], stages: [Stage; 2]) -> Option<(Answer, Stage)> {
-        match gjk::distance::<Voronoi, _, _>(self.cso, start, self.max_distance, self.cost) {
+        match gjk::distance::<Preferred, _, _>(self.cso, start, self.max_distance, self.cost) {
             Outcome::Apart(apart) => Some((Answer::Apart(apart), stages[0])),
             Outcome::Near(closest) => Some((self.near(&closest), stages[0])),
             Outcome::Overlap(simplex) => {

@@ -93,7 +93,7 @@ pub trait Triangle {
 }
 
 /// Answers for 1 to 4 vertices.
-#[inline]
+#[inline(always)]
 pub fn nearest<T: Triangle>(points: &[DVec3]) -> Nearest {
     let found = match *points {
         [] => return Nearest::default(),

@@ -17,6 +17,9 @@ pub use johnson::Johnson;
 pub use signed_volumes::SignedVolumes;
 pub use voronoi::Voronoi;
 
+/// The one that our queries use: on hulls GJK with it is the quickest, by a tenth and more.
+pub(crate) type Preferred = SignedVolumes;
+
 /// The point of a simplex nearest to the origin, and the smallest face that holds it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Nearest {

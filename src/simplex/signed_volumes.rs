@@ -11,7 +11,7 @@ use super::{DistanceSubalgorithm, Nearest};
 pub struct SignedVolumes;
 
 impl DistanceSubalgorithm for SignedVolumes {
-    #[inline]
+    #[inline(always)]
     fn nearest(points: &[DVec3]) -> Nearest {
         faces::nearest::<Self>(points)
     }
