@@ -89,18 +89,6 @@ impl PairVisitor for Cast<'_> {
             RayCast::Overlap => Some(None),
         }
     }
-
-    /// Left to parry.
-    fn visit_half_space(
-        self,
-        _: &Hull,
-        _: DVec3,
-        _: f64,
-        _: bool,
-        _: &mut Scratch<'_>,
-    ) -> Self::Output {
-        None
-    }
 }
 
 impl Cast<'_> {

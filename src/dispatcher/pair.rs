@@ -56,6 +56,9 @@ pub(super) trait PairVisitor {
     /// What comes of it.
     type Output;
 
+    /// Whether it is to be asked about half-spaces.
+    const HALF_SPACES: bool = false;
+
     /// The other shape is a polytope.
     fn visit<B: Polytope>(
         self,
@@ -67,6 +70,7 @@ pub(super) trait PairVisitor {
     ) -> Self::Output;
 
     /// The other shape is the half-space beneath the plane through its origin with this normal.
+    /// `None` if such are not asked about.
     fn visit_half_space(
         self,
         hull: &Hull,
@@ -74,7 +78,13 @@ pub(super) trait PairVisitor {
         border: f64,
         swapped: bool,
         bench: &mut Scratch<'_>,
-    ) -> Self::Output;
+    ) -> Option<Self::Output>
+    where
+        Self: Sized,
+    {
+        let _ = (hull, normal, border, swapped, bench);
+        None
+    }
 }
 
 /// The memory to work in, of the [`Workbench`].
@@ -152,8 +162,17 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
     mut side_2: Side<'b, impl Find<'b>>,
     visitor: V,
 ) -> Option<V::Output> {
-    let types = [side_1.shape.shape_type(), side_2.shape.shape_type()];
-    if !is_hull(side_1.shape, types[0]) && !is_hull(side_2.shape, types[1]) {
+    let (shape_1, shape_2) = (side_1.shape, side_2.shape);
+    let types = [shape_1.shape_type(), shape_2.shape_type()];
+    // Before anything is looked up.
+    let are_hulls = [is_hull(shape_1, types[0]), is_hull(shape_2, types[1])];
+    let is_ours = match are_hulls {
+        [true, true] => true,
+        [true, false] => is_other::<V>(types[1]),
+        [false, true] => is_other::<V>(types[0]),
+        [false, false] => false,
+    };
+    if !is_ours {
         return None;
     }
     WORKBENCH.with_borrow_mut(|Workbench { hulls, epa, clip }| {
@@ -168,98 +187,116 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
                 Some(visitor.visit(first, second, borders, false, scratch))
             }
             (Some(hull), None) => {
-                let (border, hull) = (hull.border, hull.hull(hulls)?);
-                let other = Other::of(side_2.shape, types[1])?;
-                Some(other.accept(visitor, hull, border, false, scratch))
+                let besides = Besides {
+                    hull: hull.hull(hulls)?,
+                    border: hull.border,
+                    swapped: false,
+                };
+                besides.visit(shape_2, types[1], visitor, scratch)
             }
             (None, Some(hull)) => {
-                let (border, hull) = (hull.border, hull.hull(hulls)?);
-                let other = Other::of(side_1.shape, types[0])?;
-                Some(other.accept(visitor, hull, border, true, scratch))
+                let besides = Besides {
+                    hull: hull.hull(hulls)?,
+                    border: hull.border,
+                    swapped: true,
+                };
+                besides.visit(shape_1, types[0], visitor, scratch)
             }
             (None, None) => None,
         }
     })
 }
 
-/// A shape that is no hull, with a rounded border of this radius around it.
-struct Other {
-    core: Core,
+/// Whether a shape of this type, which is no hull, can be visited.
+const fn is_other<V: PairVisitor>(shape_type: ShapeType) -> bool {
+    match shape_type {
+        ShapeType::Cuboid
+        | ShapeType::RoundCuboid
+        | ShapeType::Triangle
+        | ShapeType::RoundTriangle
+        | ShapeType::Ball
+        | ShapeType::Capsule
+        | ShapeType::Segment => true,
+        ShapeType::HalfSpace => V::HALF_SPACES,
+        _ => false,
+    }
+}
+
+/// A hull, and where in its pair it is.
+struct Besides<'a> {
+    hull: &'a Hull,
     border: f64,
+    swapped: bool,
 }
 
-enum Core {
-    Cuboid(CuboidPolytope),
-    Triangle(TrianglePolytope),
-    Ball(Ball),
-    Segment(Segment),
-    /// A half-space, by its outward unit normal.
-    HalfSpace(DVec3),
-}
-
-impl Other {
-    fn of(shape: &dyn Shape, shape_type: ShapeType) -> Option<Self> {
-        let (core, border) = match shape_type {
+impl Besides<'_> {
+    /// Visits the hull and another shape; `None` if that is not known, or too flat or too small.
+    fn visit<V: PairVisitor>(
+        &self,
+        other: &dyn Shape,
+        shape_type: ShapeType,
+        visitor: V,
+        scratch: &mut Scratch<'_>,
+    ) -> Option<V::Output> {
+        Some(match shape_type {
             ShapeType::Cuboid => {
-                let extents = shape.as_cuboid()?.half_extents;
-                (cuboid(extents.as_dvec3())?, 0.0)
+                let cuboid = cuboid(other.as_cuboid()?.half_extents.as_dvec3())?;
+                self.polytope(&cuboid, 0.0, visitor, scratch)
             }
             ShapeType::RoundCuboid => {
-                let round = shape.as_round_cuboid()?;
-                let extents = round.inner_shape.half_extents.as_dvec3();
-                (cuboid(extents)?, round.border_radius)
+                let round = other.as_round_cuboid()?;
+                let cuboid = cuboid(round.inner_shape.half_extents.as_dvec3())?;
+                self.polytope(&cuboid, round.border_radius, visitor, scratch)
             }
-            ShapeType::Triangle => (triangle(shape.as_triangle()?)?, 0.0),
+            ShapeType::Triangle => {
+                let triangle = triangle(other.as_triangle()?)?;
+                self.polytope(&triangle, 0.0, visitor, scratch)
+            }
             ShapeType::RoundTriangle => {
-                let round = shape.as_round_triangle()?;
-                (triangle(&round.inner_shape)?, round.border_radius)
+                let round = other.as_round_triangle()?;
+                let triangle = triangle(&round.inner_shape)?;
+                self.polytope(&triangle, round.border_radius, visitor, scratch)
             }
             ShapeType::Ball => {
-                let radius = shape.as_ball()?.radius;
-                (Core::Ball(Ball::new(positive(radius)?)), radius)
+                let radius = other.as_ball()?.radius;
+                self.polytope(&Ball::new(positive(radius)?), radius, visitor, scratch)
             }
             ShapeType::Capsule => {
-                let capsule = shape.as_capsule()?;
-                (segment(&capsule.segment, capsule.radius)?, capsule.radius)
+                let capsule = other.as_capsule()?;
+                let core = segment(&capsule.segment, capsule.radius)?;
+                self.polytope(&core, capsule.radius, visitor, scratch)
             }
-            ShapeType::Segment => (segment(shape.as_segment()?, 0.0)?, 0.0),
+            ShapeType::Segment => {
+                let segment = segment(other.as_segment()?, 0.0)?;
+                self.polytope(&segment, 0.0, visitor, scratch)
+            }
             ShapeType::HalfSpace => {
-                let normal = shape.as_halfspace()?.normal.as_dvec3();
-                (Core::HalfSpace(normal.try_normalize()?), 0.0)
+                let normal = other.as_halfspace()?.normal.as_dvec3().try_normalize()?;
+                let (hull, border) = (self.hull, self.border);
+                return visitor.visit_half_space(hull, normal, border, self.swapped, scratch);
             }
             _ => return None,
-        };
-        Some(Self {
-            core,
-            border: border.into(),
         })
     }
 
-    fn accept<V: PairVisitor>(
+    #[inline]
+    fn polytope<V: PairVisitor>(
         &self,
+        other: &impl Polytope,
+        border: Real,
         visitor: V,
-        hull: &Hull,
-        border: f64,
-        swapped: bool,
         scratch: &mut Scratch<'_>,
     ) -> V::Output {
-        let borders = [border, self.border];
-        match &self.core {
-            Core::Cuboid(cuboid) => visitor.visit(hull, cuboid, borders, swapped, scratch),
-            Core::Triangle(triangle) => visitor.visit(hull, triangle, borders, swapped, scratch),
-            Core::Ball(ball) => visitor.visit(hull, ball, borders, swapped, scratch),
-            Core::Segment(segment) => visitor.visit(hull, segment, borders, swapped, scratch),
-            Core::HalfSpace(normal) => {
-                visitor.visit_half_space(hull, *normal, border, swapped, scratch)
-            }
-        }
+        let borders = [self.border, border.into()];
+        visitor.visit(self.hull, other, borders, self.swapped, scratch)
     }
 }
 
 /// `None` for a box that is a segment or a point: it has no faces with a plane.
-fn cuboid(half_extents: DVec3) -> Option<Core> {
+#[inline]
+fn cuboid(half_extents: DVec3) -> Option<CuboidPolytope> {
     let thin = half_extents.cmple(DVec3::splat(THINNEST * half_extents.max_element()));
-    (thin.bitmask().count_ones() < 2).then(|| Core::Cuboid(CuboidPolytope::new(half_extents)))
+    (thin.bitmask().count_ones() < 2).then(|| CuboidPolytope::new(half_extents))
 }
 
 /// A length that tolerances can be relative to.
@@ -267,13 +304,15 @@ fn positive(length: Real) -> Option<f64> {
     (length > 0.0 && length.is_finite()).then(|| length.into())
 }
 
-fn segment(segment: &ParrySegment, border: Real) -> Option<Core> {
+#[inline]
+fn segment(segment: &ParrySegment, border: Real) -> Option<Segment> {
     positive(segment.length() + border)?;
     let ends = [segment.a, segment.b].map(|p| p.as_dvec3());
-    Some(Core::Segment(Segment::new(ends, border.into())))
+    Some(Segment::new(ends, border.into()))
 }
 
-fn triangle(triangle: &Triangle) -> Option<Core> {
+#[inline]
+fn triangle(triangle: &Triangle) -> Option<TrianglePolytope> {
     let corners = [triangle.a, triangle.b, triangle.c].map(|p| p.as_dvec3());
-    TrianglePolytope::new(corners).map(Core::Triangle)
+    TrianglePolytope::new(corners)
 }

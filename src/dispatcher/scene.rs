@@ -148,6 +148,8 @@ struct SeparationQuery<'a> {
 impl PairVisitor for SeparationQuery<'_> {
     type Output = Option<Separation>;
 
+    const HALF_SPACES: bool = true;
+
     fn visit<B: Polytope>(
         self,
         hull: &Hull,
@@ -192,13 +194,14 @@ impl PairVisitor for SeparationQuery<'_> {
         border: f64,
         swapped: bool,
         _: &mut Scratch<'_>,
-    ) -> Self::Output {
+    ) -> Option<Self::Output> {
         let near = over_half_space(hull, normal, border, self.pos12, swapped)?;
-        Some(if near.signed_distance <= f64::from(self.max_distance) {
+        let is_near = near.signed_distance <= f64::from(self.max_distance);
+        Some(Some(if is_near {
             Separation::of(near)
         } else {
             Separation::Beyond
-        })
+        }))
     }
 }
 
@@ -230,6 +233,8 @@ struct ContactQuery<'a> {
 
 impl PairVisitor for ContactQuery<'_> {
     type Output = Option<Option<Contact>>;
+
+    const HALF_SPACES: bool = true;
 
     fn visit<B: Polytope>(
         self,
@@ -270,9 +275,9 @@ impl PairVisitor for ContactQuery<'_> {
         border: f64,
         swapped: bool,
         _: &mut Scratch<'_>,
-    ) -> Self::Output {
+    ) -> Option<Self::Output> {
         let near = over_half_space(hull, normal, border, self.pos12, swapped)?;
         let within = near.signed_distance <= f64::from(self.prediction);
-        Some(within.then(|| near.contact()))
+        Some(Some(within.then(|| near.contact())))
     }
 }
