@@ -36,7 +36,7 @@ fn compound(vertices: usize, random: &mut Rand32) -> SharedShape {
 }
 
 fn queries(criterion: &mut Criterion) {
-    for vertices in [8, 60, 300] {
+    for vertices in [8, 24, 60, 300] {
         let random = &mut Rand32::new(7);
         let pairs = [
             ("hull", hull(vertices, random), hull(vertices, random)),

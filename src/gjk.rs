@@ -158,6 +158,8 @@ pub fn test_axis<A: Support, B: Support>(
 /// Distance and nearest points, starting from one to three vertices of the Minkowski difference;
 /// the nearer to the origin they lie, the fewer the iterations. Ends early, with a separating
 /// axis, when the distance is proved to exceed `max_distance`.
+// Always inlined, here and in what it calls: of answers and vectors that go through memory from one
+// function to the next, each is waited for. It is a tenth of a cold query.
 #[inline(always)]
 pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
     cso: &Cso<'_, A, B>,

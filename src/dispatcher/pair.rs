@@ -187,20 +187,10 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
                 Some(visitor.visit(first, second, borders, false, scratch))
             }
             (Some(hull), None) => {
-                let besides = Besides {
-                    hull: hull.hull(hulls)?,
-                    border: hull.border,
-                    swapped: false,
-                };
-                besides.visit(shape_2, types[1], visitor, scratch)
+                Besides::new(&hull, hulls, false)?.visit(shape_2, types[1], visitor, scratch)
             }
             (None, Some(hull)) => {
-                let besides = Besides {
-                    hull: hull.hull(hulls)?,
-                    border: hull.border,
-                    swapped: true,
-                };
-                besides.visit(shape_1, types[0], visitor, scratch)
+                Besides::new(&hull, hulls, true)?.visit(shape_1, types[0], visitor, scratch)
             }
             (None, None) => None,
         }
@@ -229,7 +219,16 @@ struct Besides<'a> {
     swapped: bool,
 }
 
-impl Besides<'_> {
+impl<'a> Besides<'a> {
+    #[inline]
+    fn new(hull: &Prepared<'a>, table: &'a HullTable, swapped: bool) -> Option<Self> {
+        Some(Self {
+            hull: hull.hull(table)?,
+            border: hull.border,
+            swapped,
+        })
+    }
+
     /// Visits the hull and another shape; `None` if that is not known, or too flat or too small.
     fn visit<V: PairVisitor>(
         &self,

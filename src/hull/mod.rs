@@ -1,5 +1,5 @@
-//! Convex hulls prepared for coherent queries: edge graph, faces and start-vertex table; the
-//! smallest ones are scanned instead.
+//! Convex hulls prepared for coherent queries: edge graph, faces, and a way to extreme vertices,
+//! which is a climb from a start-vertex table, or for small ones a scan.
 
 mod build;
 mod caps;
@@ -64,11 +64,11 @@ impl Hull {
         self.faces.len()
     }
 
-    /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 157 bytes
-    /// per vertex: 12 for the point, 52 for the neighbours and the faces beside their edges, 56 for
-    /// the planes of two faces, 36 for their corners and edges, 1 for the climb; and at most 768
-    /// bytes for the start table. Joined faces cost less, uneven numbers of neighbours a few bytes
-    /// more, and hulls that are scanned 16 more per vertex.
+    /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 141 bytes
+    /// per vertex: 12 for the point, 36 for the neighbours and the faces between them, 56 for the
+    /// planes of two faces, 36 for their corners and edges, 1 for the climb; and at most 768 bytes
+    /// for the start table. Joined faces cost less, uneven numbers of neighbours a few bytes more.
+    /// Hulls that are scanned need 12 bytes per vertex for that instead of the last two.
     pub fn heap_bytes(&self) -> usize {
         let search = match &self.search {
             Search::Scan(scan) => scan.heap_bytes(),
