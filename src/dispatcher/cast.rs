@@ -30,7 +30,7 @@ pub(super) fn cast_shapes(
         velocity,
         options,
     };
-    pair::visit(shape_1, shape_2, cast).flatten()
+    pair::visit(shape_1, shape_2, cast)
 }
 
 struct Cast<'a> {
@@ -40,7 +40,7 @@ struct Cast<'a> {
 }
 
 impl PairVisitor for Cast<'_> {
-    type Output = Option<Option<ShapeCastHit>>;
+    type Answer = Option<ShapeCastHit>;
 
     fn visit<B: Polytope>(
         self,
@@ -49,7 +49,7 @@ impl PairVisitor for Cast<'_> {
         borders: [f64; 2],
         swapped: bool,
         scratch: &mut Scratch<'_>,
-    ) -> Self::Output {
+    ) -> Option<Self::Answer> {
         let moves = self.velocity.is_finite() && self.velocity != Vector::ZERO;
         if !(moves && RelativePose::is_valid(self.pos12)) {
             return Some(None);

@@ -31,8 +31,8 @@ pub(super) struct UpdateManifold<'a, M, C> {
 }
 
 impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
-    /// `None` if the pair has no answer here (not finite): it is left to parry.
-    type Output = Option<()>;
+    /// There is one unless the pair is not finite.
+    type Answer = ();
 
     const HALF_SPACES: bool = true;
 
@@ -80,7 +80,7 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         border: f64,
         swapped: bool,
         scratch: &mut Scratch<'_>,
-    ) -> Option<Option<()>> {
+    ) -> Option<()> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
         }
@@ -100,7 +100,7 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             self.manifold.local_n2 = n2.as_vec3();
             write_points(self.manifold, &pose, &contacts, [border, 0.0], swapped);
         }
-        Some(Some(()))
+        Some(())
     }
 }
 

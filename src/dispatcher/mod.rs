@@ -216,7 +216,7 @@ impl IsaGjkDispatcher {
             manifold,
             stats: &self.stats,
         };
-        if let Some(Some(())) = pair::visit_sides(side_1, side_2, update) {
+        if pair::visit_sides(side_1, side_2, update).is_some() {
             return Ok(());
         }
         let [c1, c2] = constraints;

@@ -52,9 +52,9 @@ impl<'a> Prepared<'a> {
 
 /// Something to do with a hull and another shape, which is `swapped` in front of it in the pair.
 /// `borders` are the radii of the rounded borders around the hull and the other shape.
-pub(super) trait PairVisitor {
-    /// What comes of it.
-    type Output;
+pub(super) trait PairVisitor: Sized {
+    /// What comes of it; with `None` the pair is left to parry.
+    type Answer;
 
     /// Whether it is to be asked about half-spaces.
     const HALF_SPACES: bool = false;
@@ -67,10 +67,9 @@ pub(super) trait PairVisitor {
         borders: [f64; 2],
         swapped: bool,
         bench: &mut Scratch<'_>,
-    ) -> Self::Output;
+    ) -> Option<Self::Answer>;
 
     /// The other shape is the half-space beneath the plane through its origin with this normal.
-    /// `None` if such are not asked about.
     fn visit_half_space(
         self,
         hull: &Hull,
@@ -78,10 +77,7 @@ pub(super) trait PairVisitor {
         border: f64,
         swapped: bool,
         bench: &mut Scratch<'_>,
-    ) -> Option<Self::Output>
-    where
-        Self: Sized,
-    {
+    ) -> Option<Self::Answer> {
         let _ = (hull, normal, border, swapped, bench);
         None
     }
@@ -151,7 +147,7 @@ pub(super) fn visit<V: PairVisitor>(
     shape_1: &dyn Shape,
     shape_2: &dyn Shape,
     visitor: V,
-) -> Option<V::Output> {
+) -> Option<V::Answer> {
     visit_sides(Side::alone(shape_1), Side::alone(shape_2), visitor)
 }
 
@@ -161,7 +157,7 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
     mut side_1: Side<'a, impl Find<'a>>,
     mut side_2: Side<'b, impl Find<'b>>,
     visitor: V,
-) -> Option<V::Output> {
+) -> Option<V::Answer> {
     let (shape_1, shape_2) = (side_1.shape, side_2.shape);
     let types = [shape_1.shape_type(), shape_2.shape_type()];
     // Before anything is looked up.
@@ -184,7 +180,7 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
             (Some(first), Some(second)) => {
                 let borders = [first.border, second.border];
                 let (first, second) = (first.hull(hulls)?, second.hull(hulls)?);
-                Some(visitor.visit(first, second, borders, false, scratch))
+                visitor.visit(first, second, borders, false, scratch)
             }
             (Some(hull), None) => {
                 Besides::new(&hull, hulls, false)?.visit(shape_2, types[1], visitor, scratch)
@@ -236,8 +232,8 @@ impl<'a> Besides<'a> {
         shape_type: ShapeType,
         visitor: V,
         scratch: &mut Scratch<'_>,
-    ) -> Option<V::Output> {
-        Some(match shape_type {
+    ) -> Option<V::Answer> {
+        match shape_type {
             ShapeType::Cuboid => {
                 let cuboid = cuboid(other.as_cuboid()?.half_extents.as_dvec3())?;
                 self.polytope(&cuboid, 0.0, visitor, scratch)
@@ -272,10 +268,10 @@ impl<'a> Besides<'a> {
             ShapeType::HalfSpace => {
                 let normal = other.as_halfspace()?.normal.as_dvec3().try_normalize()?;
                 let (hull, border) = (self.hull, self.border);
-                return visitor.visit_half_space(hull, normal, border, self.swapped, scratch);
+                visitor.visit_half_space(hull, normal, border, self.swapped, scratch)
             }
-            _ => return None,
-        })
+            _ => None,
+        }
     }
 
     #[inline]
@@ -285,7 +281,7 @@ impl<'a> Besides<'a> {
         border: Real,
         visitor: V,
         scratch: &mut Scratch<'_>,
-    ) -> V::Output {
+    ) -> Option<V::Answer> {
         let borders = [self.border, border.into()];
         visitor.visit(self.hull, other, borders, self.swapped, scratch)
     }

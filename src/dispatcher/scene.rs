@@ -58,7 +58,7 @@ pub(super) fn contact(
     prediction: Real,
 ) -> Option<Option<Contact>> {
     let query = ContactQuery { pos12, prediction };
-    pair::visit(shape_1, shape_2, query).flatten()
+    pair::visit(shape_1, shape_2, query)
 }
 
 /// The nearest points of a pair, its rounded borders accounted for. Normals and points are in
@@ -137,7 +137,7 @@ fn separation(
         pos12,
         max_distance,
     };
-    pair::visit(shape_1, shape_2, query).flatten()
+    pair::visit(shape_1, shape_2, query)
 }
 
 struct SeparationQuery<'a> {
@@ -146,7 +146,7 @@ struct SeparationQuery<'a> {
 }
 
 impl PairVisitor for SeparationQuery<'_> {
-    type Output = Option<Separation>;
+    type Answer = Separation;
 
     const HALF_SPACES: bool = true;
 
@@ -157,7 +157,7 @@ impl PairVisitor for SeparationQuery<'_> {
         borders: [f64; 2],
         swapped: bool,
         _scratch: &mut Scratch<'_>,
-    ) -> Self::Output {
+    ) -> Option<Self::Answer> {
         let pose = pose_seen(self.pos12, swapped)?;
         let cso = Cso {
             shape_1: hull,
@@ -194,14 +194,14 @@ impl PairVisitor for SeparationQuery<'_> {
         border: f64,
         swapped: bool,
         _: &mut Scratch<'_>,
-    ) -> Option<Self::Output> {
+    ) -> Option<Self::Answer> {
         let near = over_half_space(hull, normal, border, self.pos12, swapped)?;
         let is_near = near.signed_distance <= f64::from(self.max_distance);
-        Some(Some(if is_near {
+        Some(if is_near {
             Separation::of(near)
         } else {
             Separation::Beyond
-        }))
+        })
     }
 }
 
@@ -232,7 +232,7 @@ struct ContactQuery<'a> {
 }
 
 impl PairVisitor for ContactQuery<'_> {
-    type Output = Option<Option<Contact>>;
+    type Answer = Option<Contact>;
 
     const HALF_SPACES: bool = true;
 
@@ -243,7 +243,7 @@ impl PairVisitor for ContactQuery<'_> {
         borders: [f64; 2],
         swapped: bool,
         scratch: &mut Scratch<'_>,
-    ) -> Self::Output {
+    ) -> Option<Self::Answer> {
         let pose = pose_seen(self.pos12, swapped)?;
         let cso = Cso {
             shape_1: hull,
@@ -275,9 +275,9 @@ impl PairVisitor for ContactQuery<'_> {
         border: f64,
         swapped: bool,
         _: &mut Scratch<'_>,
-    ) -> Option<Self::Output> {
+    ) -> Option<Self::Answer> {
         let near = over_half_space(hull, normal, border, self.pos12, swapped)?;
         let within = near.signed_distance <= f64::from(self.prediction);
-        Some(Some(within.then(|| near.contact())))
+        Some(within.then(|| near.contact()))
     }
 }

@@ -43,7 +43,7 @@ impl Highest {
     }
 
     /// Of points that tie one in the lowest lane, if any of them is there. (Halves against each other
-    /// and then their lanes: a search lane by lane is half as long again as all the rest.)
+    /// and then their lanes: fewer steps that wait for each other than lane by lane.)
     #[inline(always)]
     pub fn top(self) -> Top {
         let [low, high]: [f64x2; 2] = bytemuck::cast(self.heights);
