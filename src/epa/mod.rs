@@ -82,26 +82,30 @@ pub fn penetration_below<A: Support, B: Support>(
     cost: &mut Cost,
 ) -> Option<Depth> {
     let polytope = &mut scratch.polytope;
-    polytope.start(seed::tetrahedron(cso, seeds, cost)?, cso.size());
     let tolerance = DEPTH_GAP * cso.smaller_radius();
+    let reach = known_depth - tolerance;
+    polytope.start(seed::tetrahedron(cso, seeds, cost)?, cso.size(), reach);
     let mut best = (f64::INFINITY, None);
     for _ in 0..MAX_EXPANSIONS {
         let Some(face) = polytope.nearest_face() else {
+            if best.0 >= reach {
+                return Some(Depth::Known);
+            }
             break;
         };
         let (normal, distance) = polytope.plane(face);
-        if distance >= known_depth - tolerance {
-            return Some(Depth::Known);
-        }
         cost.iterations += 1;
         let corners = polytope.corners(face);
-        let w = cso.support(normal, corners[0].ids, cost);
+        // The corners of the face are mostly farther from where the climbs end.
+        let w = cso.support(normal, cso.start(normal), cost);
         let depth = normal.dot(w.w);
         if depth < -tolerance || depth - distance <= tolerance {
             return Some(Depth::Found(witness(corners, normal, [distance, depth])));
         }
         if depth < best.0 {
             best = (depth, Some((corners, normal)));
+            // No face beyond an upper bound of the depth can be the one to be found.
+            polytope.shorten_reach(depth + tolerance);
         }
         // A face that cannot be expanded (a sliver with an unreliable normal) is passed over.
         if polytope.contains(&w) || !polytope.expand(face, w) {

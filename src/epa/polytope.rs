@@ -9,18 +9,27 @@ use glam::DVec3;
 use crate::support::CsoVertex;
 use crate::tolerance::COPLANAR;
 
-/// An edge of a face: `edge` is the index of the corner where it starts.
-#[derive(Clone, Copy, Debug)]
-struct EdgeRef {
-    face: u32,
-    edge: u8,
+/// An edge of a face as that face sees it: three times the face, plus the number of the corner
+/// where the edge starts.
+type HalfEdge = u32;
+
+fn face_of(edge: HalfEdge) -> usize {
+    (edge / 3) as usize
 }
+
+/// The number of the edge within its face.
+fn number(edge: HalfEdge) -> usize {
+    (edge % 3) as usize
+}
+
+/// The number after a corner's.
+const NEXT: [usize; 3] = [1, 2, 0];
 
 #[derive(Clone, Debug)]
 struct Face {
     corners: [u32; 3],
-    /// The same edge as seen from the neighbouring face.
-    across: [EdgeRef; 3],
+    /// The same edges as seen from the neighbouring faces.
+    across: [HalfEdge; 3],
     normal: DVec3,
     distance: f64,
     alive: bool,
@@ -59,19 +68,23 @@ pub(super) struct ExpandingPolytope {
     vertices: Vec<CsoVertex>,
     faces: Vec<Face>,
     heap: BinaryHeap<Candidate>,
-    horizon: Vec<EdgeRef>,
+    horizon: Vec<HalfEdge>,
     visible: Vec<u32>,
-    stack: Vec<EdgeRef>,
+    stack: Vec<HalfEdge>,
     coplanar: f64,
+    /// A face whose plane is no nearer than this is not searched.
+    reach: f64,
 }
 
 impl ExpandingPolytope {
-    /// Starts over from a tetrahedron with volume. `size` is what tolerances are relative to.
-    pub fn start(&mut self, corners: [CsoVertex; 4], size: f64) {
+    /// Starts over from a tetrahedron with volume. `size` is what tolerances are relative to; faces
+    /// no nearer to the origin than `reach` are not searched.
+    pub fn start(&mut self, corners: [CsoVertex; 4], size: f64, reach: f64) {
         self.vertices.clear();
         self.faces.clear();
         self.heap.clear();
         self.coplanar = COPLANAR * size;
+        self.reach = reach;
         let [a, b, c, d] = corners.map(|v| v.w);
         let outward = (b - a).cross(c - a).dot(d - a) < 0.0;
         self.vertices.extend(if outward {
@@ -80,7 +93,7 @@ impl ExpandingPolytope {
             [corners[0], corners[2], corners[1], corners[3]]
         });
         // With corner 3 below (0, 1, 2), these turn counter-clockwise seen from outside.
-        let edge = |face, edge| EdgeRef { face, edge };
+        let edge = |face: u32, number: u32| 3 * face + number;
         self.add([0, 1, 2], [edge(1, 0), edge(2, 0), edge(3, 0)]);
         self.add([1, 0, 3], [edge(0, 0), edge(3, 2), edge(2, 1)]);
         self.add([2, 1, 3], [edge(0, 1), edge(1, 2), edge(3, 1)]);
@@ -122,6 +135,11 @@ impl ExpandingPolytope {
         }
     }
 
+    /// From now on faces no nearer than `reach` are not searched.
+    pub fn shorten_reach(&mut self, reach: f64) {
+        self.reach = self.reach.min(reach);
+    }
+
     /// Replaces all faces that see `vertex` by a cone from their horizon to it. `false`, and
     /// nothing changed, if rounding leaves no proper horizon.
     pub fn expand(&mut self, face: u32, vertex: CsoVertex) -> bool {
@@ -135,33 +153,24 @@ impl ExpandingPolytope {
         let apex = self.vertices.len() as u32;
         self.vertices.push(vertex);
         let first = self.faces.len() as u32;
-        let count = self.horizon.len() as u32;
-        for i in 0..count {
-            let outside = self.horizon[i as usize];
+        let last = first + self.horizon.len() as u32 - 1;
+        for (i, new) in (first..=last).enumerate() {
+            let outside = self.horizon[i];
             let [a, b] = self.edge_corners(outside);
-            let next = EdgeRef {
-                face: first + (i + 1) % count,
-                edge: 2,
-            };
-            let previous = EdgeRef {
-                face: first + (i + count - 1) % count,
-                edge: 1,
-            };
+            let next = if new == last { first } else { new + 1 };
+            let previous = if new == first { last } else { new - 1 };
             // Seen from the new face the shared edge runs the other way.
-            self.add([b, a, apex], [outside, next, previous]);
-            self.faces[outside.face as usize].across[outside.edge as usize] = EdgeRef {
-                face: first + i,
-                edge: 0,
-            };
+            self.add([b, a, apex], [outside, 3 * next + 2, 3 * previous + 1]);
+            self.faces[face_of(outside)].across[number(outside)] = 3 * new;
         }
         true
     }
 
     /// The corners where an edge starts and ends, in its own face's sense.
-    fn edge_corners(&self, edge: EdgeRef) -> [u32; 2] {
-        let corners = self.faces[edge.face as usize].corners;
-        let k = edge.edge as usize;
-        [corners[k], corners[(k + 1) % 3]]
+    fn edge_corners(&self, edge: HalfEdge) -> [u32; 2] {
+        let corners = self.faces[face_of(edge)].corners;
+        let k = number(edge);
+        [corners[k], corners[NEXT[k]]]
     }
 
     /// Collects the edges around the faces visible from `w`, in order, each as seen from the
@@ -175,7 +184,7 @@ impl ExpandingPolytope {
             self.stack.push(self.faces[face as usize].across[k]);
         }
         while let Some(edge) = self.stack.pop() {
-            let f = &self.faces[edge.face as usize];
+            let f = &self.faces[face_of(edge)];
             if !f.alive {
                 continue;
             }
@@ -184,10 +193,10 @@ impl ExpandingPolytope {
                 continue;
             }
             let across = f.across;
-            self.kill(edge.face);
-            let k = edge.edge as usize;
-            self.stack.push(across[(k + 2) % 3]);
-            self.stack.push(across[(k + 1) % 3]);
+            self.kill(edge / 3);
+            let k = NEXT[number(edge)];
+            self.stack.push(across[NEXT[k]]);
+            self.stack.push(across[k]);
         }
     }
 
@@ -198,25 +207,31 @@ impl ExpandingPolytope {
 
     /// Whether the horizon is one closed loop through distinct vertices.
     fn horizon_is_closed(&self) -> bool {
-        let count = self.horizon.len();
-        count >= 3
-            && (0..count).all(|i| {
-                // Seen from outside of the visible region the loop runs backwards.
-                let [start, _] = self.edge_corners(self.horizon[i]);
-                let [_, end] = self.edge_corners(self.horizon[(i + 1) % count]);
-                start == end
+        let Some(&last) = self.horizon.last() else {
+            return false;
+        };
+        // Seen from outside of the visible region the loop runs backwards.
+        let [mut before, _] = self.edge_corners(last);
+        self.horizon.len() >= 3
+            && self.horizon.iter().all(|&edge| {
+                let [start, end] = self.edge_corners(edge);
+                let follows = end == before;
+                before = start;
+                follows
             })
     }
 
-    fn add(&mut self, corners: [u32; 3], across: [EdgeRef; 3]) {
+    fn add(&mut self, corners: [u32; 3], across: [HalfEdge; 3]) {
         let [a, b, c] = corners.map(|v| self.vertices[v as usize].w);
+        let area = (b - a).cross(c - a);
+        let squared = area.length_squared();
         // A face without area has no plane: it stays in the surface, never in the search.
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        let degenerate = normal == DVec3::ZERO;
-        let distance = if degenerate {
-            f64::INFINITY
+        let (normal, distance) = if squared > 0.0 {
+            let normal = area * squared.sqrt().recip();
+            let heights = [a, b, c].map(|corner| normal.dot(corner));
+            (normal, lesser(heights[0], lesser(heights[1], heights[2])))
         } else {
-            normal.dot(a).min(normal.dot(b)).min(normal.dot(c))
+            (DVec3::ZERO, f64::INFINITY)
         };
         let face = self.faces.len() as u32;
         self.faces.push(Face {
@@ -226,8 +241,13 @@ impl ExpandingPolytope {
             distance,
             alive: true,
         });
-        if !degenerate {
+        if distance < self.reach {
             self.heap.push(Candidate { distance, face });
         }
     }
+}
+
+/// The lesser of two numbers, none of which is missing: what `min` would have to look into.
+fn lesser(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
