@@ -64,7 +64,7 @@ impl Hull {
         let (mut faces, face_of) = Faces::new(&exact, &surface, radius);
         let graph = EdgeGraph::new(&surface, &face_of);
         faces.add_caps(&exact, &graph);
-        let search = match Scan::new(&points) {
+        let search = match Scan::new(&points, center, radius) {
             Some(scan) => Search::Scan(scan),
             None => {
                 let face_len = |f: u16| faces.polygon(f.into()).len();
