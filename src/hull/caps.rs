@@ -3,7 +3,7 @@
 
 use glam::{DVec2, DVec3};
 
-use super::faces::Faces;
+use super::faces::{Corner, Faces};
 use super::graph::EdgeGraph;
 use crate::support::FaceId;
 use crate::tolerance::CAP_ANGLE_COS;
@@ -55,6 +55,10 @@ impl Caps {
             first: first.into(),
             faces: faces.into(),
         }
+    }
+
+    pub fn len(&self) -> usize {
+        self.first.len().saturating_sub(1)
     }
 
     /// The number of the cap that `face` belongs to, and all faces under its outline.
@@ -120,8 +124,8 @@ fn beside(faces: &Faces, graph: &EdgeGraph, face: u16) -> impl Iterator<Item = F
 /// outline.
 fn bays(faces: &Faces, graph: &EdgeGraph, members: &[u16], outline: &[u16]) -> Vec<u16> {
     let corners = members.iter().flat_map(|&face| faces.polygon(face.into()));
-    let inside = corners.filter(|vertex| !outline.contains(vertex));
-    let around = inside.flat_map(|&vertex| graph.faces_at(vertex.into()).flatten());
+    let inside = corners.map(|c| c.vertex).filter(|v| !outline.contains(v));
+    let around = inside.flat_map(|vertex| graph.faces_at(vertex.into()).flatten());
     let mut bays: Vec<u16> = around.filter(|face| !members.contains(face)).collect();
     bays.sort_unstable();
     bays.dedup();
@@ -138,7 +142,7 @@ impl Plane {
     fn of(points: &[DVec3], faces: &Faces, face: FaceId) -> Self {
         Self {
             normal: faces.normal(face),
-            corner: points[faces.polygon(face)[0] as usize],
+            corner: points[usize::from(faces.polygon(face)[0].vertex)],
         }
     }
 
@@ -146,8 +150,8 @@ impl Plane {
     /// sliver without a plane is judged by its corners alone.
     fn holds(&self, points: &[DVec3], faces: &Faces, face: FaceId) -> bool {
         let sine = (1.0 - CAP_ANGLE_COS * CAP_ANGLE_COS).sqrt();
-        let near = |&v: &u16| {
-            let from_corner = points[v as usize] - self.corner;
+        let near = |corner: &Corner| {
+            let from_corner = points[usize::from(corner.vertex)] - self.corner;
             self.normal.dot(from_corner) >= -sine * from_corner.length()
         };
         let other = faces.normal(face);
@@ -163,8 +167,8 @@ impl Plane {
         let mut corners: Vec<(DVec2, u16)> = members
             .iter()
             .flat_map(|&face| faces.polygon(face.into()))
-            .map(|&vertex| {
-                let p = points[vertex as usize] - self.corner;
+            .map(|&Corner { vertex, .. }| {
+                let p = points[usize::from(vertex)] - self.corner;
                 (DVec2::new(p.dot(u), p.dot(v)), vertex)
             })
             .collect();

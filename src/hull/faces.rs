@@ -1,31 +1,49 @@
 //! Faces of a hull: coplanar triangles joined to polygons, with their planes.
 
 use std::cmp::Reverse;
+use std::{iter, mem};
 
 use glam::{DVec3, Vec3};
 
 use super::caps::{self, Caps};
-use super::graph::{EdgeGraph, edge_name};
+use super::graph::{EdgeGraph, edge_at, edge_name, edge_place};
 use super::surface::{HalfEdge, Surface, next, triangle};
 use crate::support::FaceId;
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, SLIVER};
 
-/// Planes, and polygons in compressed rows: those of the faces, then the outlines of the caps.
+/// The faces and, after them, the outlines of the caps.
 #[derive(Clone, Debug)]
 pub(super) struct Faces {
-    planes: Box<[Plane]>,
-    first: Box<[u32]>,
-    vertices: Box<[u16]>,
-    /// The names of the edges that start at `vertices`.
-    edges: Box<[u32]>,
+    /// With one more to end the last one's corners.
+    polygons: Box<[Polygon]>,
+    count: usize,
+    corners: Box<[Corner]>,
     caps: Caps,
 }
 
-/// The side of an outline that cuts across faces.
-const NO_EDGE: u32 = u32::MAX;
-
-/// A supporting plane. The normal is rounded to f32; the offset is exact for that normal.
+/// A face with its supporting plane, or an outline. What is read together lies together: large
+/// hulls are not in the nearest cache.
 #[derive(Clone, Copy, Debug)]
+struct Polygon {
+    /// Rounded to f32; the offset is exact for that normal.
+    normal: Vec3,
+    /// Its first corner; the others follow up to the next polygon's first.
+    first: u32,
+    offset: f64,
+}
+
+/// A corner of a polygon.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    pub vertex: u16,
+    /// Of the side that starts here, what the name of that edge has beside its lower vertex.
+    place: u16,
+}
+
+/// The side of an outline that cuts across faces.
+const NO_EDGE: u16 = u16::MAX;
+
+/// A supporting plane.
 struct Plane {
     normal: Vec3,
     offset: f64,
@@ -33,8 +51,8 @@ struct Plane {
 
 impl Plane {
     /// That of a sliver whose direction is rounding only: no plane of the hull, and farther out
-    /// than any.
-    const UNSUPPORTED: Self = Self {
+    /// than any. Outlines have none either.
+    const NONE: Self = Self {
         normal: Vec3::ZERO,
         offset: f64::INFINITY,
     };
@@ -58,7 +76,7 @@ impl Plane {
             }
         }
         if offset - lowest > 2.0 * FACE_FLATNESS * radius {
-            Self::UNSUPPORTED
+            Self::NONE
         } else {
             Self { normal, offset }
         }
@@ -71,19 +89,17 @@ impl Faces {
         let count = surface.triangles.len();
         let regions = Regions::grow(points, surface, radius);
         let mut face_of = vec![0_u16; count];
-        let mut planes = Vec::with_capacity(count);
-        let mut first = Vec::with_capacity(count + 1);
-        let mut vertices = Vec::with_capacity(3 * count);
-        let mut edges = Vec::with_capacity(3 * count);
-        first.push(0);
+        let mut faces = Builder::with_capacity(count);
         let mut add = |polygon: &[HalfEdge], triangles: &[u32]| {
             for &t in triangles {
-                face_of[t as usize] = planes.len() as u16;
+                face_of[t as usize] = faces.polygons.len() as u16;
             }
-            planes.push(Plane::new(points, surface, polygon, radius));
-            vertices.extend(polygon.iter().map(|&side| surface.start(side) as u16));
-            edges.extend(polygon.iter().map(|&side| edge_name(surface, side)));
-            first.push(vertices.len() as u32);
+            let corner = |&side: &HalfEdge| Corner {
+                vertex: surface.start(side) as u16,
+                place: edge_place(edge_name(surface, side)),
+            };
+            let plane = Plane::new(points, surface, polygon, radius);
+            faces.add(&plane, polygon.iter().map(corner));
         };
         let mut polygon = Vec::new();
         for region in regions.all() {
@@ -99,14 +115,7 @@ impl Faces {
                 }
             }
         }
-        let faces = Self {
-            planes: planes.into(),
-            first: first.into(),
-            vertices: vertices.into(),
-            edges: edges.into(),
-            caps: Caps::default(),
-        };
-        (faces, face_of)
+        (faces.finish(Caps::default()), face_of)
     }
 
     /// Finds the caps, when the `graph` knows the faces.
@@ -115,49 +124,52 @@ impl Faces {
         if caps.is_empty() {
             return;
         }
-        self.caps = Caps::new(&caps, self.len());
-        let mut first = std::mem::take(&mut self.first).into_vec();
-        let mut vertices = std::mem::take(&mut self.vertices).into_vec();
-        let mut edges = std::mem::take(&mut self.edges).into_vec();
+        let mut faces = Builder {
+            polygons: mem::take(&mut self.polygons).into_vec(),
+            corners: mem::take(&mut self.corners).into_vec(),
+        };
+        faces.polygons.pop();
         for cap in &caps {
             let ends = cap.outline.iter().cycle().skip(1);
-            edges.extend(
-                cap.outline
-                    .iter()
-                    .zip(ends)
-                    .map(|(&from, &to)| graph.edge_id(from.into(), to.into()).unwrap_or(NO_EDGE)),
-            );
-            vertices.extend_from_slice(&cap.outline);
-            first.push(vertices.len() as u32);
+            let corner = |(&from, &to): (&u16, &u16)| Corner {
+                vertex: from,
+                place: graph
+                    .edge_id(from.into(), to.into())
+                    .map_or(NO_EDGE, edge_place),
+            };
+            faces.add(&Plane::NONE, cap.outline.iter().zip(ends).map(corner));
         }
-        (self.first, self.vertices, self.edges) = (first.into(), vertices.into(), edges.into());
+        *self = faces.finish(Caps::new(&caps, self.count));
     }
 
     pub fn len(&self) -> usize {
-        self.planes.len()
+        self.count
     }
 
     #[inline]
     pub fn normal(&self, face: FaceId) -> DVec3 {
-        self.planes[face as usize].normal.as_dvec3()
+        self.polygons[face as usize].normal.as_dvec3()
     }
 
     #[inline]
     pub fn offset(&self, face: FaceId) -> f64 {
-        self.planes[face as usize].offset
+        self.polygons[face as usize].offset
     }
 
+    /// The corners of a face or of an outline.
     #[inline]
-    pub fn polygon(&self, face: FaceId) -> &[u16] {
+    pub fn polygon(&self, face: FaceId) -> &[Corner] {
         let f = face as usize;
-        &self.vertices[self.first[f] as usize..self.first[f + 1] as usize]
+        &self.corners[self.polygons[f].first as usize..self.polygons[f + 1].first as usize]
     }
 
     /// The name of the `i`-th edge of a face, or of an outline where that is an edge.
     #[inline]
     pub fn edge(&self, face: FaceId, i: usize) -> Option<u32> {
-        let edge = self.edges[self.first[face as usize] as usize + i];
-        (edge != NO_EDGE).then_some(edge)
+        let corners = self.polygon(face);
+        let Corner { vertex, place } = corners[i];
+        let next = corners[if i + 1 < corners.len() { i + 1 } else { 0 }].vertex;
+        (place != NO_EDGE).then(|| edge_at(vertex.min(next), place))
     }
 
     /// The cap around a face: the name of its outline, and the faces under that.
@@ -188,11 +200,42 @@ impl Faces {
     }
 
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.planes)
-            + size_of_val(&*self.first)
-            + size_of_val(&*self.vertices)
-            + size_of_val(&*self.edges)
-            + self.caps.heap_bytes()
+        size_of_val(&*self.polygons) + size_of_val(&*self.corners) + self.caps.heap_bytes()
+    }
+}
+
+/// Polygons one after the other.
+struct Builder {
+    polygons: Vec<Polygon>,
+    corners: Vec<Corner>,
+}
+
+impl Builder {
+    fn with_capacity(triangles: usize) -> Self {
+        Self {
+            polygons: Vec::with_capacity(triangles + 1),
+            corners: Vec::with_capacity(3 * triangles),
+        }
+    }
+
+    fn add(&mut self, plane: &Plane, corners: impl Iterator<Item = Corner>) {
+        self.polygons.push(Polygon {
+            normal: plane.normal,
+            first: self.corners.len() as u32,
+            offset: plane.offset,
+        });
+        self.corners.extend(corners);
+    }
+
+    fn finish(mut self, caps: Caps) -> Faces {
+        let count = self.polygons.len() - caps.len();
+        self.add(&Plane::NONE, iter::empty());
+        Faces {
+            polygons: self.polygons.into(),
+            count,
+            corners: self.corners.into(),
+            caps,
+        }
     }
 }
 

@@ -128,6 +128,17 @@ fn split(id: u32) -> (VertexId, usize) {
     (id >> PLACE_BITS, (id & ((1 << PLACE_BITS) - 1)) as usize)
 }
 
+/// The name of an edge from its lower vertex and its place there.
+#[inline]
+pub(super) fn edge_at(low: u16, place: u16) -> u32 {
+    u32::from(low) << PLACE_BITS | u32::from(place)
+}
+
+/// What the name of an edge has beside its lower vertex.
+pub(super) fn edge_place(id: u32) -> u16 {
+    split(id).1 as u16
+}
+
 /// The name that the graph of a surface gives to an edge.
 pub(super) fn edge_name(surface: &Surface<'_>, h: HalfEdge) -> u32 {
     let twin = surface.twin(h);

@@ -167,7 +167,7 @@ impl Polytope for Hull {
 
     #[inline]
     fn face_vertex(&self, face: FaceId, i: usize) -> VertexId {
-        self.faces.polygon(face)[i].into()
+        self.faces.polygon(face)[i].vertex.into()
     }
 
     #[inline]
