@@ -62,23 +62,22 @@ impl Hull {
         require_single_layer(&exact, triangles, center, radius)?;
 
         let (mut faces, face_of) = Faces::new(&exact, &surface, radius);
-        let graph = EdgeGraph::new(&surface, &face_of);
+        let mut graph = EdgeGraph::new(&surface, &face_of);
         faces.add_caps(&exact, &graph);
         let search = match Scan::new(&points, center, radius) {
             Some(scan) => Search::Scan(scan),
             None => {
                 let face_len = |f: u16| faces.polygon(f.into()).len();
-                let fragile = climb::fragile(&exact, &graph, radius, face_len);
+                graph
+                    .mark_fragile(|graph, v| climb::is_fragile(&exact, graph, radius, face_len, v));
                 let slope = Slope {
                     points: &points,
                     graph: &graph,
-                    fragile: &fragile,
                     radius,
                 };
-                let start = StartTable::new(points.len(), |dir, start| {
+                Search::Climb(StartTable::new(points.len(), |dir, start| {
                     climb::extreme_vertex(slope, dir, start, &mut Cost::default())
-                });
-                Search::Climb { start, fragile }
+                }))
             }
         };
         let hull = Self {

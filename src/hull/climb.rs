@@ -8,7 +8,7 @@
 //! move has a strictly worse neighbour. With rounded coordinates a tie may also hide a small rise
 //! or a small fall: over a very short edge, or along the rim of a face with many corners.
 //!
-//! Such vertices are known when the hull is built ([`fragile`]). A climb that ends at one of them
+//! Such vertices are known when the hull is built ([`is_fragile`]). A climb that ends at one of them
 //! with a neighbour that ties searches the plateau for a vertex above it, and climbs on from
 //! there.
 //!
@@ -32,8 +32,6 @@ use crate::tolerance::{LARGE_FACE, PLATEAU, SHORT_EDGE};
 pub(super) struct Slope<'a> {
     pub points: &'a [Vec3],
     pub graph: &'a EdgeGraph,
-    /// Vertices at which a tie must be looked into.
-    pub fragile: &'a [bool],
     pub radius: f64,
 }
 
@@ -59,7 +57,7 @@ pub(super) fn extreme_vertex(
         let ties = fall * fall <= tie * tie * dir.length_squared();
         // Together: ties are not predictable (along an edge's normal its ends tie), fragile
         // vertices are.
-        if ties & slope.fragile[at as usize]
+        if ties & slope.graph.is_fragile(at)
             && let Some(exit) = slope.leave_plateau(dir, at)
         {
             (at, value) = (exit, slope.height(dir, exit));
@@ -115,26 +113,24 @@ impl Slope<'_> {
     }
 }
 
-/// The vertices at which a tie may hide a way up: those inside of a face or of a straight edge
-/// (with fewer than three faces), with a very short edge, or on a face of many corners.
-pub(super) fn fragile(
+/// Whether a tie at a vertex may hide a way up: inside of a face or of a straight edge (with fewer
+/// than three faces), with a very short edge, or on a face of many corners.
+pub(super) fn is_fragile(
     points: &[DVec3],
     graph: &EdgeGraph,
     radius: f64,
     face_len: impl Fn(u16) -> usize,
-) -> Box<[bool]> {
+    vertex: VertexId,
+) -> bool {
     let shortest = SHORT_EDGE * radius;
-    (0..points.len() as VertexId)
-        .map(|v| {
-            let to = |w: u16| points[v as usize].distance_squared(points[w as usize]);
-            let short = graph.neighbors(v).any(|w| to(w) < shortest * shortest);
-            let mut faces = graph.faces_at(v).flatten();
-            let large = faces.clone().any(|f| face_len(f) >= LARGE_FACE);
-            let first = faces.next();
-            let mut others = faces.filter(|&f| Some(f) != first);
-            let second = others.next();
-            let corner = others.any(|f| Some(f) != second);
-            short || !corner || large
-        })
-        .collect()
+    let to = |w: u16| points[vertex as usize].distance_squared(points[w as usize]);
+    let mut neighbors = graph.neighbors(vertex);
+    let short = neighbors.any(|w| to(w) < shortest * shortest);
+    let mut faces = graph.faces_at(vertex).flatten();
+    let large = faces.clone().any(|f| face_len(f) >= LARGE_FACE);
+    let first = faces.next();
+    let mut others = faces.filter(|&f| Some(f) != first);
+    let second = others.next();
+    let corner = others.any(|f| Some(f) != second);
+    short || !corner || large
 }

@@ -10,12 +10,17 @@ use crate::support::VertexId;
 /// row. With at most 2^15 vertices the name has 30 bits, as parry's packed feature ids do.
 const PLACE_BITS: u32 = 15;
 
-/// The neighbours of vertex `v` are the rows `first[v]..first[v + 1]`.
+/// The neighbours of each vertex in rows.
 #[derive(Clone, Debug)]
 pub(super) struct EdgeGraph {
+    /// Where the rows of each vertex begin, and with [`FRAGILE`] what sort of vertex it is; at the
+    /// end, where the last rows end.
     first: Box<[u32]>,
     rows: Box<[Row]>,
 }
+
+/// A bit that no number of rows has: at this vertex a tie must be looked into.
+const FRAGILE: u32 = 1 << 31;
 
 /// Four neighbours of a vertex, clockwise seen from outside. The last row is filled up with the
 /// first neighbour, which comes after the last one.
@@ -50,11 +55,26 @@ impl EdgeGraph {
         }
     }
 
+    /// Marks the vertices at which a climb must look into ties.
+    pub fn mark_fragile(&mut self, is_fragile: impl Fn(&Self, VertexId) -> bool) {
+        for v in 0..self.first.len() - 1 {
+            if is_fragile(self, v as VertexId) {
+                self.first[v] |= FRAGILE;
+            }
+        }
+    }
+
+    /// Whether a climb must look into ties at this vertex.
+    #[inline]
+    pub fn is_fragile(&self, vertex: VertexId) -> bool {
+        self.first[vertex as usize] & FRAGILE != 0
+    }
+
     /// The neighbours of a vertex, in fours; the first may be repeated.
     #[inline]
     pub fn rows(&self, vertex: VertexId) -> &[Row] {
         let v = vertex as usize;
-        &self.rows[self.first[v] as usize..self.first[v + 1] as usize]
+        &self.rows[row(self.first[v])..row(self.first[v + 1])]
     }
 
     /// The neighbours of a vertex; the first may be repeated.
@@ -114,12 +134,18 @@ impl EdgeGraph {
     fn rows_of(&self, vertex: VertexId) -> Option<&[Row]> {
         let v = vertex as usize;
         let (start, end) = (*self.first.get(v)?, *self.first.get(v + 1)?);
-        self.rows.get(start as usize..end as usize)
+        self.rows.get(row(start)..row(end))
     }
 
     pub fn heap_bytes(&self) -> usize {
         size_of_val(&*self.first) + size_of_val(&*self.rows)
     }
+}
+
+/// The number of a row, whatever is marked with it.
+#[inline]
+fn row(marked: u32) -> usize {
+    (marked & !FRAGILE) as usize
 }
 
 /// The lower vertex of an edge, and its place there.

@@ -46,11 +46,7 @@ enum Search {
     /// In a small hull, by looking at all.
     Scan(Scan),
     /// By hill climbing.
-    Climb {
-        start: StartTable,
-        /// See [`climb::fragile`].
-        fragile: Box<[bool]>,
-    },
+    Climb(StartTable),
 }
 
 impl Hull {
@@ -64,15 +60,15 @@ impl Hull {
         self.faces.len()
     }
 
-    /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 141 bytes
-    /// per vertex: 12 for the point, 36 for the neighbours and the faces between them, 56 for the
-    /// planes of two faces, 36 for their corners and edges, 1 for the climb; and at most 768 bytes
-    /// for the start table. Joined faces cost less, uneven numbers of neighbours a few bytes more.
-    /// Hulls that are scanned need 12 bytes per vertex for that instead of the last two.
+    /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 120 bytes
+    /// per vertex: 12 for the point, 36 for the neighbours and the faces between them, 48 for the
+    /// planes of two faces, 24 for their corners and edges; and at most 768 bytes for the start table.
+    /// Joined faces cost less, uneven numbers of neighbours a few bytes more. Hulls that are scanned
+    /// have 12 bytes per vertex for that instead of the table.
     pub fn heap_bytes(&self) -> usize {
         let search = match &self.search {
             Search::Scan(scan) => scan.heap_bytes(),
-            Search::Climb { start, fragile } => start.heap_bytes() + size_of_val(&**fragile),
+            Search::Climb(start) => start.heap_bytes(),
         };
         size_of_val(&*self.points) + search + self.graph.heap_bytes() + self.faces.heap_bytes()
     }
@@ -84,11 +80,10 @@ impl Hull {
         let dir = DVec3::new(x, y, z);
         match &self.search {
             Search::Scan(scan) => scan.highest(&self.points, dir),
-            Search::Climb { fragile, .. } => {
+            Search::Climb(_) => {
                 let slope = Slope {
                     points: &self.points,
                     graph: &self.graph,
-                    fragile,
                     radius: self.radius,
                 };
                 climb::extreme_vertex(slope, dir, start, cost)
@@ -109,7 +104,7 @@ impl Support for Hull {
     fn start(&self, dir: DVec3) -> VertexId {
         match &self.search {
             Search::Scan(_) => 0,
-            Search::Climb { start, .. } => start.lookup(dir),
+            Search::Climb(start) => start.lookup(dir),
         }
     }
 
