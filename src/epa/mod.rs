@@ -95,15 +95,14 @@ pub fn penetration_below<A: Support, B: Support>(
         };
         let (normal, distance) = polytope.plane(face);
         cost.iterations += 1;
-        let corners = polytope.corners(face);
         // The corners of the face are mostly farther from where the climbs end.
         let w = cso.support(normal, cso.start(normal), cost);
         let depth = normal.dot(w.w);
         if depth < -tolerance || depth - distance <= tolerance {
-            return Some(Depth::Found(witness(corners, normal, [distance, depth])));
+            return Some(Depth::Found(witness(polytope, face, [distance, depth])));
         }
         if depth < best.0 {
-            best = (depth, Some((corners, normal)));
+            best = (depth, Some(face));
             // No face beyond an upper bound of the depth can be the one to be found.
             polytope.shorten_reach(depth + tolerance);
         }
@@ -115,9 +114,8 @@ pub fn penetration_below<A: Support, B: Support>(
     }
     cost.fallbacks += 1;
     let (depth, face) = best;
-    let (corners, normal) = face?;
     let bounds = [f64::NEG_INFINITY, depth];
-    Some(Depth::Found(witness(corners, normal, bounds)))
+    Some(Depth::Found(witness(polytope, face?, bounds)))
 }
 
 /// The answer of [`penetration_below`].
@@ -135,7 +133,13 @@ pub enum Depth {
 
 /// The witness points over a face: where the origin projects to, or the point of the triangle
 /// nearest to that. (A facet larger than the triangle may hold the foot outside of it.)
-fn witness(face: [CsoVertex; 3], normal: DVec3, [lower_bound, depth]: [f64; 2]) -> Penetration {
+fn witness(
+    polytope: &ExpandingPolytope,
+    face: u32,
+    [lower_bound, depth]: [f64; 2],
+) -> Penetration {
+    let (normal, _) = polytope.plane(face);
+    let face = polytope.corners(face);
     // Measured from the foot of the normal, so that the depth does not swamp the position.
     let foot = normal * depth;
     let nearest = Preferred::nearest(&face.map(|v| v.w - foot));

@@ -9,17 +9,21 @@ use glam::DVec3;
 use crate::support::CsoVertex;
 use crate::tolerance::COPLANAR;
 
-/// An edge of a face as that face sees it: three times the face, plus the number of the corner
+/// An edge of a face as that face sees it: four times the face, plus the number of the corner
 /// where the edge starts.
 type HalfEdge = u32;
 
-fn face_of(edge: HalfEdge) -> usize {
-    (edge / 3) as usize
+fn half_edge(face: u32, number: u32) -> HalfEdge {
+    4 * face + number
+}
+
+fn face_of(edge: HalfEdge) -> u32 {
+    edge / 4
 }
 
 /// The number of the edge within its face.
 fn number(edge: HalfEdge) -> usize {
-    (edge % 3) as usize
+    (edge % 4) as usize
 }
 
 /// The number after a corner's.
@@ -93,7 +97,7 @@ impl ExpandingPolytope {
             [corners[0], corners[2], corners[1], corners[3]]
         });
         // With corner 3 below (0, 1, 2), these turn counter-clockwise seen from outside.
-        let edge = |face: u32, number: u32| 3 * face + number;
+        let edge = half_edge;
         self.add([0, 1, 2], [edge(1, 0), edge(2, 0), edge(3, 0)]);
         self.add([1, 0, 3], [edge(0, 0), edge(3, 2), edge(2, 1)]);
         self.add([2, 1, 3], [edge(0, 1), edge(1, 2), edge(3, 1)]);
@@ -160,15 +164,16 @@ impl ExpandingPolytope {
             let next = if new == last { first } else { new + 1 };
             let previous = if new == first { last } else { new - 1 };
             // Seen from the new face the shared edge runs the other way.
-            self.add([b, a, apex], [outside, 3 * next + 2, 3 * previous + 1]);
-            self.faces[face_of(outside)].across[number(outside)] = 3 * new;
+            let across = [outside, half_edge(next, 2), half_edge(previous, 1)];
+            self.add([b, a, apex], across);
+            self.faces[face_of(outside) as usize].across[number(outside)] = half_edge(new, 0);
         }
         true
     }
 
     /// The corners where an edge starts and ends, in its own face's sense.
     fn edge_corners(&self, edge: HalfEdge) -> [u32; 2] {
-        let corners = self.faces[face_of(edge)].corners;
+        let corners = self.faces[face_of(edge) as usize].corners;
         let k = number(edge);
         [corners[k], corners[NEXT[k]]]
     }
@@ -184,7 +189,7 @@ impl ExpandingPolytope {
             self.stack.push(self.faces[face as usize].across[k]);
         }
         while let Some(edge) = self.stack.pop() {
-            let f = &self.faces[face_of(edge)];
+            let f = &self.faces[face_of(edge) as usize];
             if !f.alive {
                 continue;
             }
@@ -193,7 +198,7 @@ impl ExpandingPolytope {
                 continue;
             }
             let across = f.across;
-            self.kill(edge / 3);
+            self.kill(face_of(edge));
             let k = NEXT[number(edge)];
             self.stack.push(across[NEXT[k]]);
             self.stack.push(across[k]);

@@ -215,6 +215,12 @@ impl Test {
             -1.0
         };
         let normal = cross * (outward / area_squared.sqrt());
+        let vertices = parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], outward > 0.0);
+        let corner = |i: usize| vertices[i].w;
+        if let Some(i) = side_beyond(4, corner, normal, self.tolerance) {
+            let [from, to] = [vertices[i], vertices[(i + 1) % 4]];
+            return Verdict::Beyond(Side::new([from.ids, to.ids], to.w - from.w, normal));
+        }
         let extreme = cso.support(normal, [ends_1[0], ends_2[0]], cost);
         let signed_distance = -normal.dot(extreme.w);
         if signed_distance > self.max_distance {
@@ -226,12 +232,6 @@ impl Test {
         }
         if -normal.dot(offset) - signed_distance > self.tolerance {
             return Verdict::Cut(extreme, normal);
-        }
-        let vertices = parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], outward > 0.0);
-        let corner = |i: usize| vertices[i].w;
-        if let Some(i) = side_beyond(4, corner, normal, self.tolerance) {
-            let [from, to] = [vertices[i], vertices[(i + 1) % 4]];
-            return Verdict::Beyond(Side::new([from.ids, to.ids], to.w - from.w, normal));
         }
         let [s, _] = crossing(offset, along_1, along_2);
         let on_1 = a0 + along_1 * s;
