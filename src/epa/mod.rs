@@ -133,11 +133,7 @@ pub enum Depth {
 
 /// The witness points over a face: where the origin projects to, or the point of the triangle
 /// nearest to that. (A facet larger than the triangle may hold the foot outside of it.)
-fn witness(
-    polytope: &ExpandingPolytope,
-    face: u32,
-    [lower_bound, depth]: [f64; 2],
-) -> Penetration {
+fn witness(polytope: &ExpandingPolytope, face: u32, [lower_bound, depth]: [f64; 2]) -> Penetration {
     let (normal, _) = polytope.plane(face);
     let face = polytope.corners(face);
     // Measured from the foot of the normal, so that the depth does not swamp the position.

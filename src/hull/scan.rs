@@ -11,7 +11,9 @@ use wide::f32x4;
 
 use crate::support::VertexId;
 
-/// Up to so many vertices a scan is quicker than a climb.
+/// Up to so many vertices, as many as a mask has bits, a scan is quicker than a cold climb, with 64
+/// by a third, and no slower than a warm one. With 100 a warm climb is quicker by 2 %, and GJK's
+/// climbs from iteration to iteration are.
 const LARGEST: usize = 64;
 
 const LANES: usize = 4;
@@ -24,7 +26,8 @@ const ROUNDING: f32 = 18.0 / (1 << 24) as f32;
 /// The vertices of a small hull.
 #[derive(Clone, Debug)]
 pub(super) struct Scan {
-    /// Coordinate by coordinate in fours, from the centre, in radii.
+    /// Coordinate by coordinate in fours, from the centre, in radii. The last one is filled up with
+    /// its first vertex.
     fours: Box<[[f32x4; 3]]>,
     /// A bit for each vertex.
     all: u64,
@@ -38,7 +41,7 @@ impl Scan {
         }
         let place = |p: &Vec3| ((p.as_dvec3() - center) / radius).as_vec3();
         let fours = points.chunks(LANES).map(|chunk| {
-            let lanes: [Vec3; LANES] = array::from_fn(|i| chunk.get(i).map_or(Vec3::ZERO, place));
+            let lanes: [Vec3; LANES] = array::from_fn(|i| place(chunk.get(i).unwrap_or(&chunk[0])));
             let coordinate = |k| f32x4::new(lanes.map(|p: Vec3| p[k]));
             [coordinate(0), coordinate(1), coordinate(2)]
         });
@@ -100,4 +103,53 @@ impl Scan {
 /// The greater of two numbers, none of which is missing: what `max` would have to look into.
 fn greater(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn vector(dice: &mut oorandom::Rand64) -> DVec3 {
+        DVec3::from([(); 3].map(|()| 2.0 * dice.rand_float() - 1.0))
+    }
+
+    /// Whatever the number of points, their size and place, and the direction's length; also of
+    /// points that nearly tie.
+    #[test]
+    fn the_highest_in_f64_is_found() {
+        let mut dice = oorandom::Rand64::new(3);
+        for round in 0..20_000 {
+            let size = 10_f64.powi(round % 13 - 6);
+            let flatness = [1.0, 1e-3, 1e-6, 0.0][round as usize / 13 % 4];
+            let center = vector(&mut dice) * size * [0.0, 1.0, 1e3][round as usize % 3];
+            let normal = vector(&mut dice).normalize();
+            let count = 4 + round as usize % (LARGEST - 3);
+            let points: Vec<Vec3> = (0..count)
+                .map(|_| {
+                    let p = vector(&mut dice);
+                    let flat = p - normal * normal.dot(p) * (1.0 - flatness);
+                    (center + flat * size).as_vec3()
+                })
+                .collect();
+            let away = |p: &Vec3| p.as_dvec3().distance(center);
+            let radius = points.iter().map(away).fold(0.0, f64::max);
+            let scan = Scan::new(&points, center, radius).expect("few points");
+            for toward in [normal, vector(&mut dice), DVec3::X] {
+                let dir = toward * 10_f64.powi(round % 81 - 40);
+                let height = |p: &Vec3| dir.dot(p.as_dvec3());
+                let most = points.iter().map(height).fold(f64::NEG_INFINITY, f64::max);
+                let first = points.iter().position(|p| height(p) == most);
+                assert_eq!(first, Some(scan.highest(&points, dir) as usize));
+            }
+        }
+    }
+
+    #[test]
+    fn nonsense_has_some_vertex() {
+        let points = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_ONE, Vec3::ONE];
+        let scan = Scan::new(&points, DVec3::ZERO, 2.0).expect("few points");
+        for dir in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY, DVec3::MIN] {
+            assert!((scan.highest(&points, dir) as usize) < points.len());
+        }
+    }
 }
