@@ -159,116 +159,84 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
     visitor: V,
 ) -> Option<V::Answer> {
     let (shape_1, shape_2) = (side_1.shape, side_2.shape);
-    let types = [shape_1.shape_type(), shape_2.shape_type()];
-    // Before anything is looked up.
-    let are_hulls = [is_hull(shape_1, types[0]), is_hull(shape_2, types[1])];
-    let is_ours = match are_hulls {
-        [true, true] => true,
-        [true, false] => is_other::<V>(types[1]),
-        [false, true] => is_other::<V>(types[0]),
-        [false, false] => false,
-    };
-    if !is_ours {
-        return None;
-    }
-    WORKBENCH.with_borrow_mut(|Workbench { hulls, epa, clip }| {
-        hulls.make_room();
-        let hull_1 = side_1.prepare(types[0], hulls);
-        let hull_2 = side_2.prepare(types[1], hulls);
-        let scratch = &mut Scratch { epa, clip };
-        match (hull_1, hull_2) {
-            (Some(first), Some(second)) => {
-                let borders = [first.border, second.border];
-                let (first, second) = (first.hull(hulls)?, second.hull(hulls)?);
-                visitor.visit(first, second, borders, false, scratch)
-            }
-            (Some(hull), None) => {
-                Besides::new(&hull, hulls, false)?.visit(shape_2, types[1], visitor, scratch)
-            }
-            (None, Some(hull)) => {
-                Besides::new(&hull, hulls, true)?.visit(shape_1, types[0], visitor, scratch)
-            }
-            (None, None) => None,
-        }
-    })
-}
-
-/// Whether a shape of this type, which is no hull, can be visited.
-const fn is_other<V: PairVisitor>(shape_type: ShapeType) -> bool {
-    match shape_type {
-        ShapeType::Cuboid
-        | ShapeType::RoundCuboid
-        | ShapeType::Triangle
-        | ShapeType::RoundTriangle
-        | ShapeType::Ball
-        | ShapeType::Capsule
-        | ShapeType::Segment => true,
-        ShapeType::HalfSpace => V::HALF_SPACES,
-        _ => false,
+    let [type_1, type_2] = [shape_1.shape_type(), shape_2.shape_type()];
+    match [is_hull(shape_1, type_1), is_hull(shape_2, type_2)] {
+        [true, true] => WORKBENCH.with_borrow_mut(|Workbench { hulls, epa, clip }| {
+            hulls.make_room();
+            let first = side_1.prepare(type_1, hulls)?;
+            let second = side_2.prepare(type_2, hulls)?;
+            let borders = [first.border, second.border];
+            let (first, second) = (first.hull(hulls)?, second.hull(hulls)?);
+            visitor.visit(first, second, borders, false, &mut Scratch { epa, clip })
+        }),
+        [true, false] => Besides::new(side_1, type_1, false).visit(shape_2, type_2, visitor),
+        [false, true] => Besides::new(side_2, type_2, true).visit(shape_1, type_1, visitor),
+        [false, false] => None,
     }
 }
 
-/// A hull, and where in its pair it is.
-struct Besides<'a> {
-    hull: &'a Hull,
-    border: f64,
+/// A hull, and where in its pair it is. It is not looked up before the other shape is known.
+struct Besides<'a, F> {
+    side: Side<'a, F>,
+    shape_type: ShapeType,
     swapped: bool,
 }
 
-impl<'a> Besides<'a> {
+impl<'a, F: Find<'a>> Besides<'a, F> {
     #[inline]
-    fn new(hull: &Prepared<'a>, table: &'a HullTable, swapped: bool) -> Option<Self> {
-        Some(Self {
-            hull: hull.hull(table)?,
-            border: hull.border,
+    fn new(side: Side<'a, F>, shape_type: ShapeType, swapped: bool) -> Self {
+        Self {
+            side,
+            shape_type,
             swapped,
-        })
+        }
     }
 
     /// Visits the hull and another shape; `None` if that is not known, or too flat or too small.
     fn visit<V: PairVisitor>(
-        &self,
+        self,
         other: &dyn Shape,
         shape_type: ShapeType,
         visitor: V,
-        scratch: &mut Scratch<'_>,
     ) -> Option<V::Answer> {
         match shape_type {
             ShapeType::Cuboid => {
                 let cuboid = cuboid(other.as_cuboid()?.half_extents.as_dvec3())?;
-                self.polytope(&cuboid, 0.0, visitor, scratch)
+                self.polytope(&cuboid, 0.0, visitor)
             }
             ShapeType::RoundCuboid => {
                 let round = other.as_round_cuboid()?;
                 let cuboid = cuboid(round.inner_shape.half_extents.as_dvec3())?;
-                self.polytope(&cuboid, round.border_radius, visitor, scratch)
+                self.polytope(&cuboid, round.border_radius, visitor)
             }
             ShapeType::Triangle => {
                 let triangle = triangle(other.as_triangle()?)?;
-                self.polytope(&triangle, 0.0, visitor, scratch)
+                self.polytope(&triangle, 0.0, visitor)
             }
             ShapeType::RoundTriangle => {
                 let round = other.as_round_triangle()?;
                 let triangle = triangle(&round.inner_shape)?;
-                self.polytope(&triangle, round.border_radius, visitor, scratch)
+                self.polytope(&triangle, round.border_radius, visitor)
             }
             ShapeType::Ball => {
                 let radius = other.as_ball()?.radius;
-                self.polytope(&Ball::new(positive(radius)?), radius, visitor, scratch)
+                self.polytope(&Ball::new(positive(radius)?), radius, visitor)
             }
             ShapeType::Capsule => {
                 let capsule = other.as_capsule()?;
                 let core = segment(&capsule.segment, capsule.radius)?;
-                self.polytope(&core, capsule.radius, visitor, scratch)
+                self.polytope(&core, capsule.radius, visitor)
             }
             ShapeType::Segment => {
                 let segment = segment(other.as_segment()?, 0.0)?;
-                self.polytope(&segment, 0.0, visitor, scratch)
+                self.polytope(&segment, 0.0, visitor)
             }
-            ShapeType::HalfSpace => {
+            ShapeType::HalfSpace if V::HALF_SPACES => {
                 let normal = other.as_halfspace()?.normal.as_dvec3().try_normalize()?;
-                let (hull, border) = (self.hull, self.border);
-                visitor.visit_half_space(hull, normal, border, self.swapped, scratch)
+                let swapped = self.swapped;
+                self.with_hull(|hull, border, scratch| {
+                    visitor.visit_half_space(hull, normal, border, swapped, scratch)
+                })
             }
             _ => None,
         }
@@ -276,14 +244,33 @@ impl<'a> Besides<'a> {
 
     #[inline]
     fn polytope<V: PairVisitor>(
-        &self,
+        self,
         other: &impl Polytope,
         border: Real,
         visitor: V,
-        scratch: &mut Scratch<'_>,
     ) -> Option<V::Answer> {
-        let borders = [self.border, border.into()];
-        visitor.visit(self.hull, other, borders, self.swapped, scratch)
+        let swapped = self.swapped;
+        self.with_hull(|hull, hull_border, scratch| {
+            let borders = [hull_border, border.into()];
+            visitor.visit(hull, other, borders, swapped, scratch)
+        })
+    }
+
+    /// Hands over the hull and its border.
+    #[inline]
+    fn with_hull<T>(
+        mut self,
+        visit: impl FnOnce(&Hull, f64, &mut Scratch<'_>) -> Option<T>,
+    ) -> Option<T> {
+        WORKBENCH.with_borrow_mut(|Workbench { hulls, epa, clip }| {
+            hulls.make_room();
+            let prepared = self.side.prepare(self.shape_type, hulls)?;
+            visit(
+                prepared.hull(hulls)?,
+                prepared.border,
+                &mut Scratch { epa, clip },
+            )
+        })
     }
 }
 
