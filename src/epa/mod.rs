@@ -85,6 +85,9 @@ pub fn penetration_below<A: Support, B: Support>(
     let tolerance = DEPTH_GAP * cso.smaller_radius();
     let reach = known_depth - tolerance;
     polytope.start(seed::tetrahedron(cso, seeds, cost)?, cso.size(), reach);
+    for seed in seeds {
+        polytope.include(seed);
+    }
     let mut best = (f64::INFINITY, None);
     for _ in 0..MAX_EXPANSIONS {
         let Some(face) = polytope.nearest_face() else {

@@ -39,6 +39,13 @@ struct Face {
     alive: bool,
 }
 
+impl Face {
+    /// How far a point is above the plane.
+    fn height(&self, w: DVec3) -> f64 {
+        self.normal.dot(w) - self.distance
+    }
+}
+
 /// A heap entry; the heap's greatest is the nearest face, and of equally near ones the oldest.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
@@ -144,6 +151,14 @@ impl ExpandingPolytope {
         self.reach = self.reach.min(reach);
     }
 
+    /// Grows to a point of the difference, if that is outside: one that need not be searched for.
+    pub fn include(&mut self, vertex: &CsoVertex) {
+        let is_outside = |face: &Face| face.alive && face.height(vertex.w) > self.coplanar;
+        if let Some(face) = self.faces.iter().position(is_outside) {
+            self.expand(face as u32, *vertex);
+        }
+    }
+
     /// Replaces all faces that see `vertex` by a cone from their horizon to it. `false`, and
     /// nothing changed, if rounding leaves no proper horizon.
     pub fn expand(&mut self, face: u32, vertex: CsoVertex) -> bool {
@@ -193,7 +208,7 @@ impl ExpandingPolytope {
             if !f.alive {
                 continue;
             }
-            if f.normal.dot(w) - f.distance <= -self.coplanar {
+            if f.height(w) <= -self.coplanar {
                 self.horizon.push(edge);
                 continue;
             }
