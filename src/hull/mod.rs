@@ -79,7 +79,7 @@ impl Hull {
     fn extreme_vertex(&self, x: f64, y: f64, z: f64, start: VertexId, cost: &mut Cost) -> VertexId {
         let dir = DVec3::new(x, y, z);
         match &self.search {
-            Search::Scan(scan) => scan.highest(&self.points, dir),
+            Search::Scan(scan) => scan.highest(&self.points, dir, start),
             Search::Climb(_) => {
                 let slope = Slope {
                     points: &self.points,

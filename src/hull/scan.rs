@@ -51,13 +51,17 @@ impl Scan {
         })
     }
 
-    /// The extreme vertex of `points` in direction `dir`, of those that tie the first.
+    /// The extreme vertex of `points` in direction `dir`: of those that tie the preferred one, so
+    /// that contacts stay where they are, or the first.
     #[inline]
-    pub fn highest(&self, points: &[Vec3], dir: DVec3) -> VertexId {
+    pub fn highest(&self, points: &[Vec3], dir: DVec3, preferred: VertexId) -> VertexId {
         let mut candidates = self.candidates(dir);
         let mut highest = candidates.trailing_zeros();
-        candidates &= candidates.wrapping_sub(1);
-        if candidates != 0 {
+        let is_one = candidates & (candidates - 1) == 0;
+        if !is_one {
+            if candidates >> preferred & 1 == 1 {
+                highest = preferred;
+            }
             let height = |vertex: u32| dir.dot(points[vertex as usize].as_dvec3());
             let mut most = height(highest);
             while candidates != 0 {
@@ -139,7 +143,7 @@ mod tests {
                 let height = |p: &Vec3| dir.dot(p.as_dvec3());
                 let most = points.iter().map(height).fold(f64::NEG_INFINITY, f64::max);
                 let first = points.iter().position(|p| height(p) == most);
-                assert_eq!(first, Some(scan.highest(&points, dir) as usize));
+                assert_eq!(first, Some(scan.highest(&points, dir, 0) as usize));
             }
         }
     }
@@ -149,7 +153,7 @@ mod tests {
         let points = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_ONE, Vec3::ONE];
         let scan = Scan::new(&points, DVec3::ZERO, 2.0).expect("few points");
         for dir in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY, DVec3::MIN] {
-            assert!((scan.highest(&points, dir) as usize) < points.len());
+            assert!((scan.highest(&points, dir, 0) as usize) < points.len());
         }
     }
 }
