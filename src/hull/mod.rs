@@ -60,11 +60,11 @@ impl Hull {
         self.faces.len()
     }
 
-    /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 120 bytes
+    /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 121 bytes
     /// per vertex: 12 for the point, 36 for the neighbours and the faces between them, 48 for the
-    /// planes of two faces, 24 for their corners and edges; and at most 768 bytes for the start table.
-    /// Joined faces cost less, uneven numbers of neighbours a few bytes more. Hulls that are scanned
-    /// have 12 bytes per vertex for that instead of the table.
+    /// planes of two faces, 24 for their corners and edges, 1 for the start table. Joined faces cost
+    /// less, uneven numbers of neighbours a few bytes more. Hulls that are scanned have 12 bytes per
+    /// vertex for that instead of the table.
     pub fn heap_bytes(&self) -> usize {
         let search = match &self.search {
             Search::Scan(scan) => scan.heap_bytes(),

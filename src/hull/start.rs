@@ -4,8 +4,9 @@ use glam::DVec3;
 
 use crate::support::VertexId;
 
-/// More cells per cube edge than this buy less than one climbing move.
-const FINEST: usize = 8;
+/// A cell for every two vertices, a byte a vertex, up to so many cells per cube edge: those of
+/// hulls of 12,000 vertices.
+const FINEST: usize = 32;
 
 /// The six faces of the cube of directions, `grid * grid` cells each, one vertex a cell.
 #[derive(Clone, Debug)]
