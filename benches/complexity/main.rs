@@ -110,10 +110,10 @@ fn time(poses: &[RelativePose], mut work: impl FnMut(&RelativePose) -> Observati
     best * 1.0e6 / poses.len() as f64
 }
 
-/// The same loop with supports by climbing and by a scan.
+/// The same loop with the hull's own supports and with those of a plain scan.
 fn by_scan() {
-    println!("\n### Supports by climbing and by a scan: cold distance\n");
-    println!("| vertices | climbing µs | scanning µs |");
+    println!("\n### Supports by the hull and by a plain scan: cold distance\n");
+    println!("| vertices | hull µs | scanning µs |");
     println!("|---:|---:|---:|");
     for size in SIZES {
         let hulls = [sphere(size, 1), sphere(size, 2)];
