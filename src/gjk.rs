@@ -176,14 +176,14 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
     }
     let mut nearest = simplex.nearest::<S>(DVec3::ZERO);
     simplex.keep(nearest.face);
-    for _ in 0..MAX_ITERATIONS {
+    for iteration in 0..MAX_ITERATIONS {
         cost.iterations += 1;
         let v = nearest.point;
         let norm = v.length();
         if norm.partial_cmp(&(TOUCHING * size)) != Some(std::cmp::Ordering::Greater) {
             return Outcome::Overlap(simplex);
         }
-        let w = cso.support(-v, ids, cost);
+        let w = cso.support(-v, climb_start(cso, iteration, -v, ids), cost);
         ids = w.ids;
         let lower_bound = v.dot(w.w) / norm;
         if lower_bound > max_distance {
@@ -217,6 +217,25 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
     let v = nearest.point;
     let lower_bound = v.dot(cso.support(-v, ids, cost).w) / v.length();
     Outcome::Near(closest(&simplex, &nearest, lower_bound))
+}
+
+/// In the first iterations the direction turns so far that a table knows a nearer vertex than the
+/// one found last.
+const TURNING: usize = 4;
+
+/// Where the climbs of an iteration begin.
+#[inline]
+pub(crate) fn climb_start<A: Support, B: Support>(
+    cso: &Cso<'_, A, B>,
+    iteration: usize,
+    dir: DVec3,
+    last: [VertexId; 2],
+) -> [VertexId; 2] {
+    if iteration < TURNING {
+        cso.start(dir)
+    } else {
+        last
+    }
 }
 
 fn closest(simplex: &Simplex, nearest: &Nearest, lower_bound: f64) -> Closest {

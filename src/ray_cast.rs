@@ -11,7 +11,7 @@
 
 use glam::DVec3;
 
-use crate::gjk::Simplex;
+use crate::gjk::{Simplex, climb_start};
 use crate::simplex::{DistanceSubalgorithm, Nearest};
 use crate::stats::Cost;
 use crate::support::{Cso, Support};
@@ -69,7 +69,7 @@ pub fn ray_cast<S: DistanceSubalgorithm, A: Support, B: Support>(
     let mut ids = start.ids;
     // The simplex's point nearest to that of the ray, relative to it.
     let mut nearest = simplex.nearest::<S>(ray.point());
-    for _ in 0..MAX_ITERATIONS {
+    for iteration in 0..MAX_ITERATIONS {
         cost.iterations += 1;
         let toward = nearest.point;
         let norm = toward.length();
@@ -79,7 +79,8 @@ pub fn ray_cast<S: DistanceSubalgorithm, A: Support, B: Support>(
         if norm <= target_distance + ray.tolerance() {
             return ray.arrived(&simplex, &nearest);
         }
-        let vertex = cso.support(-toward, ids, cost);
+        let start = climb_start(cso, iteration, -toward, ids);
+        let vertex = cso.support(-toward, start, cost);
         ids = vertex.ids;
         let advanced = match ray.advance(toward / norm, vertex.w) {
             Step::Advanced if ray.time <= max_time => true,
