@@ -215,6 +215,7 @@ impl Test {
             -1.0
         };
         let normal = cross * (outward / area_squared.sqrt());
+        // Before a vertex is searched for: whether or not the two edges still span a facet, it is left.
         let vertices = parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], outward > 0.0);
         let corner = |i: usize| vertices[i].w;
         if let Some(i) = side_beyond(4, corner, normal, self.tolerance) {
