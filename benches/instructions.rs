@@ -10,6 +10,8 @@
 mod hull;
 #[path = "shared/trajectory.rs"]
 mod trajectory;
+#[path = "shared/update.rs"]
+mod update;
 
 use std::collections::BTreeMap;
 use std::process::{Command, ExitCode};
@@ -17,9 +19,9 @@ use std::process::{Command, ExitCode};
 use hull::hull;
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::Pose;
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::SharedShape;
-use trajectory::{FRAMES, GAPS, PREDICTION, VERTICES, trajectory};
+use trajectory::{FRAMES, GAPS, VERTICES, trajectory};
+use update::{Manifolds, update};
 
 /// What another minor version of the compiler may cost.
 const TOLERANCE: f64 = 0.05;
@@ -56,8 +58,6 @@ fn parse(number: &str) -> usize {
     number.parse().expect("a number, from count()")
 }
 
-type Manifolds = Vec<ContactManifold<(), ()>>;
-
 /// Updates the manifold of two hulls along their trajectory.
 fn run(gap: usize, vertices: usize, frames: usize) {
     let shapes = [hull(vertices, 1), hull(vertices, 2)];
@@ -72,13 +72,11 @@ fn run(gap: usize, vertices: usize, frames: usize) {
 #[inline(never)]
 fn measured_update(
     dispatcher: &IsaGjkDispatcher,
-    [a, b]: &[SharedShape; 2],
+    shapes: &[SharedShape; 2],
     pose: &Pose,
     manifolds: &mut Manifolds,
 ) {
-    dispatcher
-        .contact_manifolds(pose, &**a, &**b, PREDICTION, manifolds, &mut None)
-        .expect("hulls are supported");
+    update(dispatcher, shapes, pose, manifolds);
 }
 
 fn count_all() -> Result<Counts, String> {

@@ -9,34 +9,29 @@
 mod hull;
 #[path = "shared/trajectory.rs"]
 mod trajectory;
+#[path = "shared/update.rs"]
+mod update;
 
-use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use hull::hull;
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Vector};
-use parry3d::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
+use parry3d::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry3d::shape::SharedShape;
-use trajectory::{GAPS, PREDICTION, VERTICES, trajectory};
+use trajectory::{GAPS, VERTICES, trajectory};
+use update::{Manifolds, update};
 
 /// One pass over the trajectory with a manifold of its own.
 fn pass<D: PersistentQueryDispatcher>(
     dispatcher: &D,
     shapes: &[SharedShape; 2],
     poses: &[Pose],
-    manifolds: &mut Vec<ContactManifold<(), ()>>,
+    manifolds: &mut Manifolds,
 ) {
     for pose in poses {
-        let _ = dispatcher.contact_manifolds(
-            black_box(pose),
-            &*shapes[0],
-            &*shapes[1],
-            PREDICTION,
-            manifolds,
-            &mut None,
-        );
+        update(dispatcher, shapes, pose, manifolds);
     }
 }
 
@@ -48,7 +43,7 @@ fn time<D: PersistentQueryDispatcher>(
     updates: u64,
 ) -> Duration {
     let round: Vec<Pose> = poses.iter().chain(poses.iter().rev()).copied().collect();
-    let mut manifolds = Vec::new();
+    let mut manifolds = Manifolds::new();
     pass(dispatcher, shapes, &round, &mut manifolds);
     let rounds = updates.div_ceil(round.len() as u64);
     let start = Instant::now();

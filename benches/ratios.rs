@@ -5,6 +5,8 @@
 mod hull;
 #[path = "shared/trajectory.rs"]
 mod trajectory;
+#[path = "shared/update.rs"]
+mod update;
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -14,11 +16,12 @@ use isa_gjk::IsaGjkDispatcher;
 use oorandom::Rand32;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{
-    ContactManifold, DefaultQueryDispatcher, NonlinearRigidMotion, PersistentQueryDispatcher,
-    QueryDispatcher, ShapeCastOptions,
+    DefaultQueryDispatcher, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
+    ShapeCastOptions,
 };
 use parry3d::shape::SharedShape;
-use trajectory::{FRAMES, GAPS, PREDICTION, VERTICES, trajectory};
+use trajectory::{FRAMES, GAPS, VERTICES, trajectory};
+use update::{Manifolds, update};
 
 const TURNS: usize = 101;
 
@@ -50,15 +53,13 @@ fn warm_manifolds() {
 }
 
 fn update_along(
-    dispatcher: &impl PersistentQueryDispatcher<(), ()>,
-    [a, b]: &[SharedShape; 2],
+    dispatcher: &impl PersistentQueryDispatcher,
+    shapes: &[SharedShape; 2],
     poses: &[Pose],
 ) {
-    let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+    let mut manifolds = Manifolds::new();
     for pose in poses {
-        dispatcher
-            .contact_manifolds(pose, &**a, &**b, PREDICTION, &mut manifolds, &mut None)
-            .expect("hulls are supported");
+        update(dispatcher, shapes, pose, &mut manifolds);
         black_box(&manifolds);
     }
 }
@@ -94,8 +95,14 @@ const QUERIES: [(&str, Ask); 6] = [
 ];
 
 fn scene_queries() {
+    let random = &mut Rand32::new(7);
+    let poses: [Pose; POSES] = [(); POSES].map(|()| {
+        let place = vector(random) * 2.5;
+        Pose::new(place, vector(random) * 3.0)
+    });
     for vertices in [8, 24, 60, 300] {
         let hull = |seed| hull(vertices, seed);
+        let first = hull(1);
         let part = |x: Real, seed| (Pose::translation(x, 0.0, 0.0), hull(seed));
         let others = [
             ("hull", hull(2)),
@@ -112,15 +119,10 @@ fn scene_queries() {
             "\n### Scene queries of a hull of {vertices} vertices: ns, default → ours, ratio\n"
         );
         println!("| query | {names} |\n|---|---|---|---|---|---|");
-        let random = &mut Rand32::new(7);
-        let poses: [Pose; POSES] = [(); POSES].map(|()| {
-            let place = vector(random) * 2.5;
-            Pose::new(place, vector(random) * 3.0)
-        });
         let ours = IsaGjkDispatcher::default();
         for (query, ask) in QUERIES {
             let row = others.each_ref().map(|(_, other)| {
-                let pair = [&hull(1), other];
+                let pair = [&first, other];
                 let all = |d: &dyn QueryDispatcher| poses.iter().for_each(|p| ask(d, p, pair));
                 in_turn(POSES, || all(&DefaultQueryDispatcher), || all(&ours))
             });

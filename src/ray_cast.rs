@@ -79,8 +79,7 @@ pub fn ray_cast<S: DistanceSubalgorithm, A: Support, B: Support>(
         if norm <= target_distance + ray.tolerance() {
             return ray.arrived(&simplex, &nearest);
         }
-        let start = climb_start(cso, iteration, -toward, ids);
-        let vertex = cso.support(-toward, start, cost);
+        let vertex = cso.support(-toward, climb_start(cso, iteration, -toward, ids), cost);
         ids = vertex.ids;
         let advanced = match ray.advance(toward / norm, vertex.w) {
             Step::Advanced if ray.time <= max_time => true,

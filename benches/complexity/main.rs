@@ -23,6 +23,8 @@ const SIZES: [usize; 11] = [8, 16, 32, 64, 128, 256, 512, 1024, 2048, 5000, 10_0
 const FRAMES: usize = 2000;
 /// The machine is shared: the best of a few measurements is the least disturbed.
 const REPEATS: usize = 5;
+/// Around the cluster of the death polytope.
+const POINTS: usize = 20_000;
 
 fn main() {
     queries("Apart by 30 cm, asked about 2 cm", 1.3, 0.02);
@@ -122,13 +124,13 @@ fn by_scan() {
             .iter()
             .filter_map(RelativePose::new)
             .collect();
-        let climbing = time(&poses, |pose| {
+        let searching = time(&poses, |pose| {
             between::<false, _, _>((&hulls[0], &hulls[1]), pose, Direction::Gilbert)
         });
         let scanning = time(&poses, |pose| {
             between::<false, _, _>((&clouds[0], &clouds[1]), pose, Direction::Gilbert)
         });
-        println!("| {size} | {climbing:.2} | {scanning:.2} |");
+        println!("| {size} | {searching:.2} | {scanning:.2} |");
     }
 }
 
@@ -162,7 +164,8 @@ fn strewn(count: usize) -> Vec<RelativePose> {
 
 /// Gilbert's direction against Nesterov's, and whether a dropped vertex comes back.
 fn variants() {
-    println!("\n### Directions, and vertices that return: unrelated poses\n");
+    println!("\n### Directions, and vertices that return\n");
+    println!("Unrelated poses; gaps from 0.1 mm to 1 m.\n");
     println!(
         "| vertices | Gilbert: iterations | most | µs | returned / supports | Nesterov: iterations | most | µs | returned / supports |"
     );
@@ -192,13 +195,16 @@ fn variants() {
 fn death() {
     println!("\n### Death polytope against a point, near its cluster at every scale\n");
     println!(
+        "{POINTS} points around the apex of a paraboloid on which each vertex is half as far from the\napex as the one before; distances from 1e-12 to 1.\n"
+    );
+    println!(
         "| vertices | Gilbert: iterations | most | returned | Nesterov: iterations | most | returned |"
     );
     println!("|---:|---:|---:|---:|---:|---:|---:|");
     for size in [4, 6, 8, 12, 16, 20, 24, 32, 48] {
         let cloud = Cloud::death(size);
         let cells = [Direction::Gilbert, Direction::Nesterov].map(|direction| {
-            let seen: Vec<_> = around_the_cluster(20_000)
+            let seen: Vec<_> = around_the_cluster()
                 .iter()
                 .map(|pose| {
                     let cso = Cso {
@@ -226,11 +232,11 @@ fn death() {
 }
 
 /// Points below the paraboloid's apex and beside it, their distances spread over the decades.
-fn around_the_cluster(count: usize) -> Vec<RelativePose> {
+fn around_the_cluster() -> Vec<RelativePose> {
     let mut random = Rand64::new(1988);
     let mut scale = || 10_f64.powf(-12.0 * random.rand_float());
-    let mut places = Vec::with_capacity(count);
-    for _ in 0..count {
+    let mut places = Vec::with_capacity(POINTS);
+    for _ in 0..POINTS {
         places.push([scale(), scale(), scale()]);
     }
     let mut signs = Rand64::new(7);

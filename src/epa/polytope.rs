@@ -104,11 +104,22 @@ impl ExpandingPolytope {
             [corners[0], corners[2], corners[1], corners[3]]
         });
         // With corner 3 below (0, 1, 2), these turn counter-clockwise seen from outside.
-        let edge = half_edge;
-        self.add([0, 1, 2], [edge(1, 0), edge(2, 0), edge(3, 0)]);
-        self.add([1, 0, 3], [edge(0, 0), edge(3, 2), edge(2, 1)]);
-        self.add([2, 1, 3], [edge(0, 1), edge(1, 2), edge(3, 1)]);
-        self.add([0, 2, 3], [edge(0, 2), edge(2, 2), edge(1, 1)]);
+        self.add(
+            [0, 1, 2],
+            [half_edge(1, 0), half_edge(2, 0), half_edge(3, 0)],
+        );
+        self.add(
+            [1, 0, 3],
+            [half_edge(0, 0), half_edge(3, 2), half_edge(2, 1)],
+        );
+        self.add(
+            [2, 1, 3],
+            [half_edge(0, 1), half_edge(1, 2), half_edge(3, 1)],
+        );
+        self.add(
+            [0, 2, 3],
+            [half_edge(0, 2), half_edge(2, 2), half_edge(1, 1)],
+        );
     }
 
     /// The living face whose plane is nearest to the origin.

@@ -57,10 +57,6 @@ impl Caps {
         }
     }
 
-    pub fn len(&self) -> usize {
-        self.first.len().saturating_sub(1)
-    }
-
     /// The number of the cap that `face` belongs to, and all faces under its outline.
     #[inline]
     pub fn around(&self, face: FaceId) -> Option<(usize, &[u16])> {

@@ -6,7 +6,7 @@ use std::{iter, mem};
 use glam::{DVec3, Vec3};
 
 use super::caps::{self, Caps};
-use super::graph::{EdgeGraph, edge_at, edge_name, edge_place};
+use super::graph::{EdgeGraph, edge_at};
 use super::surface::{HalfEdge, Surface, next, triangle};
 use crate::support::FaceId;
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, SLIVER};
@@ -96,7 +96,7 @@ impl Faces {
             }
             let corner = |&side: &HalfEdge| Corner {
                 vertex: surface.start(side) as u16,
-                place: edge_place(edge_name(surface, side)),
+                place: surface.edge_place(side),
             };
             let plane = Plane::new(points, surface, polygon, radius);
             faces.add(&plane, polygon.iter().map(corner));
@@ -115,7 +115,8 @@ impl Faces {
                 }
             }
         }
-        (faces.finish(Caps::default()), face_of)
+        let count = faces.polygons.len();
+        (faces.finish(count, Caps::default()), face_of)
     }
 
     /// Finds the caps, when the `graph` knows the faces.
@@ -133,13 +134,11 @@ impl Faces {
             let ends = cap.outline.iter().cycle().skip(1);
             let corner = |(&from, &to): (&u16, &u16)| Corner {
                 vertex: from,
-                place: graph
-                    .edge_id(from.into(), to.into())
-                    .map_or(NO_EDGE, edge_place),
+                place: graph.edge_place(from.into(), to.into()).unwrap_or(NO_EDGE),
             };
             faces.add(&Plane::NONE, cap.outline.iter().zip(ends).map(corner));
         }
-        *self = faces.finish(Caps::new(&caps, self.count));
+        *self = faces.finish(self.count, Caps::new(&caps, self.count));
     }
 
     pub fn len(&self) -> usize {
@@ -169,7 +168,7 @@ impl Faces {
         let corners = self.polygon(face);
         let Corner { vertex, place } = corners[i];
         let next = corners[if i + 1 < corners.len() { i + 1 } else { 0 }].vertex;
-        (place != NO_EDGE).then(|| edge_at(vertex.min(next), place))
+        (place != NO_EDGE).then(|| edge_at(vertex.min(next).into(), place))
     }
 
     /// The cap around a face: the name of its outline, and the faces under that.
@@ -227,8 +226,8 @@ impl Builder {
         self.corners.extend(corners);
     }
 
-    fn finish(mut self, caps: Caps) -> Faces {
-        let count = self.polygons.len() - caps.len();
+    /// The first `count` polygons are faces, the others outlines of caps.
+    fn finish(mut self, count: usize, caps: Caps) -> Faces {
         self.add(&Plane::NONE, iter::empty());
         Faces {
             polygons: self.polygons.into(),

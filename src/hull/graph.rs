@@ -2,7 +2,7 @@
 
 use std::array;
 
-use super::surface::{HalfEdge, Surface, triangle};
+use super::surface::{Surface, triangle};
 use super::top::LANES;
 use crate::support::VertexId;
 
@@ -91,25 +91,28 @@ impl EdgeGraph {
 
     /// The name of an edge, the same for both directions.
     pub fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32> {
-        let (low, high) = (from.min(to), from.max(to));
-        let place = self.place(low, high)?;
-        Some(low << PLACE_BITS | place as u32)
+        Some(edge_at(from.min(to), self.edge_place(from, to)?))
     }
 
-    /// Where `to` first occurs among the neighbours of `from`. All are looked at: where a search
-    /// would end is not predictable.
+    /// What the name of an edge has beside its lower vertex: its place there. All are looked at:
+    /// where a search would end is not predictable.
     #[inline]
-    fn place(&self, from: VertexId, to: VertexId) -> Option<usize> {
-        let rows = self.rows(from);
+    pub fn edge_place(&self, from: VertexId, to: VertexId) -> Option<u16> {
+        let (low, high) = (from.min(to), from.max(to));
+        let rows = self.rows(low);
         let none = rows.len() * LANES;
         let mut place = none;
         for (r, row) in rows.iter().enumerate().rev() {
             for (lane, &w) in row.to.iter().enumerate().rev() {
                 let here = r * LANES + lane;
-                place = if VertexId::from(w) == to { here } else { place };
+                place = if VertexId::from(w) == high {
+                    here
+                } else {
+                    place
+                };
             }
         }
-        (place < none).then_some(place)
+        (place < none).then_some(place as u16)
     }
 
     /// The end vertices of an edge.
@@ -156,22 +159,6 @@ fn split(id: u32) -> (VertexId, usize) {
 
 /// The name of an edge from its lower vertex and its place there.
 #[inline]
-pub(super) fn edge_at(low: u16, place: u16) -> u32 {
-    u32::from(low) << PLACE_BITS | u32::from(place)
-}
-
-/// What the name of an edge has beside its lower vertex.
-pub(super) fn edge_place(id: u32) -> u16 {
-    split(id).1 as u16
-}
-
-/// The name that the graph of a surface gives to an edge.
-pub(super) fn edge_name(surface: &Surface<'_>, h: HalfEdge) -> u32 {
-    let twin = surface.twin(h);
-    let h = if surface.start(h) < surface.start(twin) {
-        h
-    } else {
-        twin
-    };
-    surface.start(h) << PLACE_BITS | surface.place(h)
+pub(super) fn edge_at(low: VertexId, place: u16) -> u32 {
+    low << PLACE_BITS | u32::from(place)
 }

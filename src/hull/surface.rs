@@ -88,10 +88,15 @@ impl<'a> Surface<'a> {
         &self.sides[self.first[v] as usize..self.first[v + 1] as usize]
     }
 
-    /// The place of a half-edge among those that leave its start.
-    #[inline]
-    pub fn place(&self, h: HalfEdge) -> u32 {
-        self.position[h as usize] - self.first[self.start(h) as usize]
+    /// The place of an edge among those that leave its lower vertex.
+    pub fn edge_place(&self, h: HalfEdge) -> u16 {
+        let twin = self.twin(h);
+        let outgoing = if self.start(h) < self.start(twin) {
+            h
+        } else {
+            twin
+        };
+        (self.position[outgoing as usize] - self.first[self.start(outgoing) as usize]) as u16
     }
 
     /// Brings the sides around each vertex into their order, from that to the lowest vertex on.
