@@ -16,6 +16,8 @@ pub enum Stage {
     Feature,
     /// Features near the previous ones, or near that axis, did: walked to from facet to facet.
     Walk,
+    /// Such features, with the polytope of a previous frame re-evaluated, certified a depth.
+    Shell,
     /// GJK started from the previous frame's axis and vertices.
     WarmGjk,
     /// Penetration depth expanded from the previous frame's features.
@@ -28,13 +30,14 @@ pub enum Stage {
 
 impl Stage {
     /// How many stages there are.
-    pub const COUNT: usize = 8;
+    pub const COUNT: usize = 9;
     /// All stages, in the order of [`Stats::answered`].
     pub const ALL: [Self; Self::COUNT] = [
         Self::Balls,
         Self::Axis,
         Self::Feature,
         Self::Walk,
+        Self::Shell,
         Self::WarmGjk,
         Self::WarmEpa,
         Self::ColdGjk,
@@ -48,6 +51,7 @@ impl Stage {
             Self::Axis => "axis",
             Self::Feature => "feature",
             Self::Walk => "walk",
+            Self::Shell => "shell",
             Self::WarmGjk => "warm GJK",
             Self::WarmEpa => "warm EPA",
             Self::ColdGjk => "cold GJK",

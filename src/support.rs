@@ -176,6 +176,15 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
         (-self.center()).normalize_or(DVec3::X)
     }
 
+    /// The point inside, with the vertices of no matter which.
+    pub fn vertex_inside(&self) -> CsoVertex {
+        CsoVertex {
+            w: self.center(),
+            on_1: self.shape_1.center(),
+            ids: [0; 2],
+        }
+    }
+
     /// A point inside, with its origins on the two shapes.
     pub fn center(&self) -> DVec3 {
         self.shape_1.center() - self.pose.point_to_1(self.shape_2.center())

@@ -48,7 +48,7 @@ impl PairVisitor for Cast<'_> {
         other: &B,
         borders: [f64; 2],
         swapped: bool,
-        scratch: &mut Scratch<'_>,
+        scratch: &mut Scratch,
     ) -> Option<Self::Answer> {
         let moves = self.velocity.is_finite() && self.velocity != Vector::ZERO;
         if !(moves && RelativePose::is_valid(self.pos12)) {
@@ -103,12 +103,13 @@ impl Cast<'_> {
         cso: &Cso<'_, A, B>,
         velocity: DVec3,
         seen: &Seen<'_>,
-        scratch: &mut Scratch<'_>,
+        scratch: &mut Scratch,
     ) -> Option<Option<ShapeCastHit>> {
         let mut query = Query {
             cso,
             max_distance: f64::INFINITY,
-            scratch: scratch.epa,
+            shell: None,
+            scratch: &mut scratch.epa,
             cost: &mut Cost::default(),
         };
         let Answer::Near(near) = query.run(&Memory::None)?.0 else {

@@ -43,7 +43,7 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         other: &B,
         borders: [f64; 2],
         swapped: bool,
-        scratch: &mut Scratch<'_>,
+        scratch: &mut Scratch,
     ) -> Option<()> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
@@ -59,7 +59,8 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         let (answer, stage) = Query {
             cso: &cso,
             max_distance,
-            scratch: scratch.epa,
+            shell: Some(scratch.shells.of(&*self.manifold)),
+            scratch: &mut scratch.epa,
             cost: &mut cost,
         }
         .run(&cache::read(self.manifold, swapped))?;
@@ -79,7 +80,7 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         normal: DVec3,
         border: f64,
         swapped: bool,
-        scratch: &mut Scratch<'_>,
+        scratch: &mut Scratch,
     ) -> Option<()> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
@@ -94,7 +95,8 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             cache::write_axis(self.manifold, &half_space::axis(&near));
         } else {
             self.stats.record(Stage::Feature, &cost);
-            let contacts = manifold::half_space_contacts(hull, &near, max_distance, scratch.clip);
+            let contacts =
+                manifold::half_space_contacts(hull, &near, max_distance, &mut scratch.clip);
             let [n1, n2] = cache::ordered(normals(&near, &pose), swapped);
             self.manifold.local_n1 = n1.as_vec3();
             self.manifold.local_n2 = n2.as_vec3();
@@ -117,7 +119,7 @@ impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
         max_distance: f64,
         borders: [f64; 2],
         swapped: bool,
-        scratch: &mut Scratch<'_>,
+        scratch: &mut Scratch,
     ) {
         let [mut n1, mut n2] =
             cache::ordered(normals(near, cso.pose), swapped).map(|n| n.as_vec3());
@@ -131,12 +133,12 @@ impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
             return;
         }
         let contacts = if n1 == unconstrained {
-            manifold::contacts(cso, near, max_distance, scratch.clip)
+            manifold::contacts(cso, near, max_distance, &mut scratch.clip)
         } else {
             let [normal, _] = cache::ordered([n1, n2], swapped);
             let normal = normal.as_dvec3().normalize();
             let limit = ABSURD_DEPTH * near.signed_distance.min(0.0);
-            manifold::contacts_along(cso, near, normal, [limit, max_distance], scratch.clip)
+            manifold::contacts_along(cso, near, normal, [limit, max_distance], &mut scratch.clip)
         };
         self.manifold.local_n1 = n1;
         self.manifold.local_n2 = n2;

@@ -7,6 +7,7 @@ use parry3d::math::Real;
 use parry3d::shape::{Segment as ParrySegment, Shape, ShapeType, Triangle};
 
 use super::hulls::{EachProved, Find, HullRef, HullTable};
+use super::shells::ShellTable;
 use crate::epa::EpaScratch;
 use crate::hull::Hull;
 use crate::hull_shape::HullShape;
@@ -17,10 +18,17 @@ use crate::tolerance::THINNEST;
 
 /// What a thread keeps from query to query: prepared hulls, and memory to work in.
 #[derive(Default)]
-pub(super) struct Workbench {
+struct Workbench {
     hulls: HullTable,
+    scratch: Scratch,
+}
+
+/// Memory to work in.
+#[derive(Default)]
+pub(super) struct Scratch {
     pub epa: EpaScratch,
     pub clip: ClipScratch,
+    pub shells: ShellTable,
 }
 
 thread_local! {
@@ -66,7 +74,7 @@ pub(super) trait PairVisitor: Sized {
         other: &B,
         borders: [f64; 2],
         swapped: bool,
-        bench: &mut Scratch<'_>,
+        scratch: &mut Scratch,
     ) -> Option<Self::Answer>;
 
     /// The other shape is the half-space beneath the plane through its origin with this normal.
@@ -76,17 +84,11 @@ pub(super) trait PairVisitor: Sized {
         normal: DVec3,
         border: f64,
         swapped: bool,
-        bench: &mut Scratch<'_>,
+        scratch: &mut Scratch,
     ) -> Option<Self::Answer> {
-        let _ = (hull, normal, border, swapped, bench);
+        let _ = (hull, normal, border, swapped, scratch);
         None
     }
-}
-
-/// The memory to work in, of the [`Workbench`].
-pub(super) struct Scratch<'a> {
-    pub epa: &'a mut EpaScratch,
-    pub clip: &'a mut ClipScratch,
 }
 
 /// Whether a shape is a hull to us, so that pairs with it are ours to answer.
@@ -161,13 +163,13 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
     let (shape_1, shape_2) = (side_1.shape, side_2.shape);
     let [type_1, type_2] = [shape_1.shape_type(), shape_2.shape_type()];
     match [is_hull(shape_1, type_1), is_hull(shape_2, type_2)] {
-        [true, true] => WORKBENCH.with_borrow_mut(|Workbench { hulls, epa, clip }| {
+        [true, true] => WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
             hulls.make_room();
             let first = side_1.prepare(type_1, hulls)?;
             let second = side_2.prepare(type_2, hulls)?;
             let borders = [first.border, second.border];
             let (first, second) = (first.hull(hulls)?, second.hull(hulls)?);
-            visitor.visit(first, second, borders, false, &mut Scratch { epa, clip })
+            visitor.visit(first, second, borders, false, scratch)
         }),
         [true, false] => Besides::new(side_1, type_1, false).visit(shape_2, type_2, visitor),
         [false, true] => Besides::new(side_2, type_2, true).visit(shape_1, type_1, visitor),
@@ -260,16 +262,12 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
     #[inline]
     fn with_hull<T>(
         mut self,
-        visit: impl FnOnce(&Hull, f64, &mut Scratch<'_>) -> Option<T>,
+        visit: impl FnOnce(&Hull, f64, &mut Scratch) -> Option<T>,
     ) -> Option<T> {
-        WORKBENCH.with_borrow_mut(|Workbench { hulls, epa, clip }| {
+        WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
             hulls.make_room();
             let prepared = self.side.prepare(self.shape_type, hulls)?;
-            visit(
-                prepared.hull(hulls)?,
-                prepared.border,
-                &mut Scratch { epa, clip },
-            )
+            visit(prepared.hull(hulls)?, prepared.border, scratch)
         })
     }
 }

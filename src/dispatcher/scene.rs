@@ -156,7 +156,7 @@ impl PairVisitor for SeparationQuery<'_> {
         other: &B,
         borders: [f64; 2],
         swapped: bool,
-        _scratch: &mut Scratch<'_>,
+        _scratch: &mut Scratch,
     ) -> Option<Self::Answer> {
         let pose = pose_seen(self.pos12, swapped)?;
         let cso = Cso {
@@ -193,7 +193,7 @@ impl PairVisitor for SeparationQuery<'_> {
         normal: DVec3,
         border: f64,
         swapped: bool,
-        _: &mut Scratch<'_>,
+        _: &mut Scratch,
     ) -> Option<Self::Answer> {
         let near = over_half_space(hull, normal, border, self.pos12, swapped)?;
         let is_near = near.signed_distance <= f64::from(self.max_distance);
@@ -242,7 +242,7 @@ impl PairVisitor for ContactQuery<'_> {
         other: &B,
         borders: [f64; 2],
         swapped: bool,
-        scratch: &mut Scratch<'_>,
+        scratch: &mut Scratch,
     ) -> Option<Self::Answer> {
         let pose = pose_seen(self.pos12, swapped)?;
         let cso = Cso {
@@ -258,7 +258,8 @@ impl PairVisitor for ContactQuery<'_> {
         let (answer, _) = Query {
             cso: &cso,
             max_distance: f64::from(self.prediction) + borders[0] + borders[1],
-            scratch: scratch.epa,
+            shell: None,
+            scratch: &mut scratch.epa,
             cost: &mut Cost::default(),
         }
         .run(&Memory::None)?;
@@ -274,7 +275,7 @@ impl PairVisitor for ContactQuery<'_> {
         normal: DVec3,
         border: f64,
         swapped: bool,
-        _: &mut Scratch<'_>,
+        _: &mut Scratch,
     ) -> Option<Self::Answer> {
         let near = over_half_space(hull, normal, border, self.pos12, swapped)?;
         let within = near.signed_distance <= f64::from(self.prediction);

@@ -11,6 +11,9 @@
 
 mod polytope;
 mod seed;
+mod shell;
+
+pub use shell::Shell;
 
 use glam::DVec3;
 
@@ -19,7 +22,6 @@ use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Support};
 use crate::tolerance::DEPTH_GAP;
 use polytope::ExpandingPolytope;
-
 /// Identical fine spheres need a face for every pair of facets; nothing sane needs more.
 const MAX_EXPANSIONS: u32 = 50_000;
 
@@ -73,7 +75,7 @@ pub fn penetration<A: Support, B: Support>(
 }
 
 /// The penetration depth if it is less than `known_depth` by more than the tolerance, as
-/// [`penetration`] finds it; else [`Depth::Known`].
+/// [`penetration`] finds it; else [`Depth::Known`]: then none is less by more than twice that.
 pub fn penetration_below<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     seeds: &[CsoVertex],
@@ -91,7 +93,7 @@ pub fn penetration_below<A: Support, B: Support>(
     let mut best = (f64::INFINITY, None);
     for _ in 0..MAX_EXPANSIONS {
         let Some(face) = polytope.nearest_face() else {
-            if best.0 >= reach {
+            if best.0 >= reach - tolerance {
                 return Some(Depth::Known);
             }
             break;
@@ -101,7 +103,8 @@ pub fn penetration_below<A: Support, B: Support>(
         // The corners of the face are mostly farther from where the climbs end.
         let w = cso.support(normal, cso.start(normal), cost);
         let depth = normal.dot(w.w);
-        if depth < -tolerance || depth - distance <= tolerance {
+        let is_bound = depth - distance <= tolerance;
+        if depth < -tolerance || is_bound && depth < reach {
             return Some(Depth::Found(witness(polytope, face, [distance, depth])));
         }
         if depth < best.0 {
@@ -110,8 +113,11 @@ pub fn penetration_below<A: Support, B: Support>(
             polytope.shorten_reach(depth + tolerance);
         }
         // A face that cannot be expanded (a sliver with an unreliable normal) is passed over.
-        if polytope.contains(&w) || !polytope.expand(face, w) {
+        let is_stuck = !is_bound && (polytope.contains(&w) || !polytope.expand(face, w));
+        if is_stuck {
             cost.fallbacks += 1;
+        }
+        if is_bound || is_stuck {
             polytope.discard(face);
         }
     }

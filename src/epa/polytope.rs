@@ -82,20 +82,48 @@ pub(super) struct ExpandingPolytope {
     horizon: Vec<HalfEdge>,
     visible: Vec<u32>,
     stack: Vec<HalfEdge>,
+    /// The sides of an added surface, by their ends.
+    sides: Vec<HalfEdge>,
     coplanar: f64,
     /// A face whose plane is no nearer than this is not searched.
     reach: f64,
 }
 
 impl ExpandingPolytope {
-    /// Starts over from a tetrahedron with volume. `size` is what tolerances are relative to; faces
-    /// no nearer to the origin than `reach` are not searched.
-    pub fn start(&mut self, corners: [CsoVertex; 4], size: f64, reach: f64) {
+    /// Starts over without anything. `size` is what tolerances are relative to; faces no nearer to
+    /// the origin than `reach` are not searched.
+    pub fn clear(&mut self, size: f64, reach: f64) {
         self.vertices.clear();
         self.faces.clear();
         self.heap.clear();
         self.coplanar = COPLANAR * size;
         self.reach = reach;
+    }
+
+    pub fn push(&mut self, vertex: CsoVertex) {
+        self.vertices.push(vertex);
+    }
+
+    /// Adds the triangles of a closed surface over the vertices that were pushed.
+    pub fn add_surface(&mut self, triangles: &[[u8; 3]]) {
+        let count = self.vertices.len();
+        let place = |from: u8, to: u8| usize::from(from) * count + usize::from(to);
+        self.sides.clear();
+        self.sides.resize(count * count, 0);
+        for (triangle, face) in triangles.iter().zip(0..) {
+            for k in 0..3 {
+                self.sides[place(triangle[k], triangle[NEXT[k]])] = half_edge(face, k as u32);
+            }
+        }
+        for triangle in triangles {
+            let across = [0, 1, 2].map(|k| self.sides[place(triangle[NEXT[k]], triangle[k])]);
+            self.add(triangle.map(u32::from), across);
+        }
+    }
+
+    /// Starts over from a tetrahedron with volume, as [`clear`](Self::clear) does.
+    pub fn start(&mut self, corners: [CsoVertex; 4], size: f64, reach: f64) {
+        self.clear(size, reach);
         let [a, b, c, d] = corners.map(|v| v.w);
         let outward = (b - a).cross(c - a).dot(d - a) < 0.0;
         self.vertices.extend(if outward {
@@ -137,6 +165,18 @@ impl ExpandingPolytope {
     pub fn plane(&self, face: u32) -> (DVec3, f64) {
         let face = &self.faces[face as usize];
         (face.normal, face.distance)
+    }
+
+    /// The corners of all faces.
+    pub fn surface(&self) -> impl Iterator<Item = &[u32; 3]> {
+        self.faces
+            .iter()
+            .filter(|face| face.alive)
+            .map(|face| &face.corners)
+    }
+
+    pub fn vertex(&self, vertex: u32) -> &CsoVertex {
+        &self.vertices[vertex as usize]
     }
 
     pub fn corners(&self, face: u32) -> [CsoVertex; 3] {
@@ -279,6 +319,6 @@ impl ExpandingPolytope {
 }
 
 /// The lesser of two numbers, none of which is missing: what `min` would have to look into.
-fn lesser(a: f64, b: f64) -> f64 {
+pub(super) fn lesser(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }

@@ -5,8 +5,9 @@
 //! 2. [`Stage::Axis`]: one support pair along the previous axis still separates.
 //! 3. [`Stage::Feature`]: the previous nearest features still prove distance or depth.
 //! 4. [`Stage::Walk`]: features next to them do.
-//! 5. [`Stage::WarmGjk`]: incremental GJK from the previous axis and vertices.
-//! 6. [`Stage::WarmEpa`]: the depth, expanded from the previous features.
+//! 5. [`Stage::Shell`]: those features do, with the polytope of the previous expansion.
+//! 6. [`Stage::WarmGjk`]: incremental GJK from the previous axis and vertices.
+//! 7. [`Stage::WarmEpa`]: the depth, expanded from the previous features.
 //!
 //! A pair without a previous frame starts with the line of centres as its axis; GJK and EPA count
 //! as cold for it. A stale or wrong memory costs time, never
@@ -20,7 +21,7 @@ pub use feature::{Feature, vertices};
 
 use glam::DVec3;
 
-use crate::epa::{self, Depth, EpaScratch, Penetration};
+use crate::epa::{self, Depth, EpaScratch, Penetration, Shell};
 use crate::gjk::{self, Closest, Outcome, SeparatingAxis};
 use crate::simplex::Preferred;
 use crate::stats::{Cost, Stage};
@@ -85,6 +86,9 @@ pub struct Query<'a, 'c, A, B> {
     pub cso: &'a Cso<'c, A, B>,
     /// Answers beyond this distance are [`Answer::Apart`].
     pub max_distance: f64,
+    /// The polytope of the pair's last expansion, if the pair has a next frame. It saves work, and
+    /// changes no bit of an answer.
+    pub shell: Option<&'a mut Shell>,
     /// Memory for the expanding polytope.
     pub scratch: &'a mut EpaScratch,
     /// Filled in with what the query cost.
@@ -168,9 +172,10 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             Outcome::Overlap(simplex) => {
                 let mut seeds = Seeds::default();
                 simplex.vertices().for_each(|vertex| seeds.push(*vertex));
-                let seeds = seeds.as_slice();
-                let depth = epa::penetration(self.cso, seeds, self.scratch, self.cost)?;
-                Some((self.overlapping(&depth), stages[1]))
+                match self.expand(seeds.as_slice(), f64::INFINITY)? {
+                    Depth::Found(depth) => Some((self.overlapping(&depth), stages[1])),
+                    Depth::Known => None,
+                }
             }
         }
     }
@@ -194,7 +199,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             let (next, ends) = match verdict {
                 Verdict::Apart(apart) => return Some((Answer::Apart(apart), stage)),
                 Verdict::Certified(proximity) => return Some((Answer::Near(proximity), stage)),
-                Verdict::Unproved(candidate) => return self.run_epa(&candidate, gjk),
+                Verdict::Unproved(candidate) => return self.find_depth(&candidate, gjk),
                 Verdict::Beyond(side) => {
                     let [from, to] = side.ends;
                     if crossed == Some([to, from]) {
@@ -232,13 +237,18 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
     }
 
-    /// The depth, grown from points near the `candidate`, if it is not its own; where it finds the
-    /// shapes separate, GJK finds how far.
-    fn run_epa(&mut self, candidate: &Proximity, gjk: [Stage; 2]) -> Option<(Answer, Stage)> {
+    /// The depth, which may be proved to be the candidate's by a polytope of a previous frame. If not
+    /// EPA grows one from points near the candidate; where it finds the shapes separate, GJK finds how
+    /// far.
+    fn find_depth(&mut self, candidate: &Proximity, gjk: [Stage; 2]) -> Option<(Answer, Stage)> {
         let known = -candidate.signed_distance;
+        if let Some(shell) = &mut self.shell
+            && shell.proves(self.cso, known, self.scratch, self.cost)
+        {
+            return Some((Answer::Near(*candidate), Stage::Shell));
+        }
         let seeds = Seeds::under(self.cso, candidate.features);
-        let (cso, seeds) = (self.cso, seeds.as_slice());
-        let depth = match epa::penetration_below(cso, seeds, known, self.scratch, self.cost)? {
+        let depth = match self.expand(seeds.as_slice(), known)? {
             Depth::Found(depth) => depth,
             Depth::Known => return Some((Answer::Near(*candidate), gjk[1])),
         };
@@ -256,6 +266,16 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             return self.run_gjk(&depth.face, gjk);
         }
         Some((self.overlapping(&depth), gjk[1]))
+    }
+
+    /// EPA, whose polytope is kept for the frames to come.
+    fn expand(&mut self, seeds: &[CsoVertex], known_depth: f64) -> Option<Depth> {
+        let (cso, scratch) = (self.cso, &mut *self.scratch);
+        let depth = epa::penetration_below(cso, seeds, known_depth, scratch, self.cost);
+        if let Some(shell) = &mut self.shell {
+            shell.keep(cso, scratch);
+        }
+        depth
     }
 
     fn near(&self, closest: &Closest) -> Answer {

@@ -1,0 +1,180 @@
+//! The polytope of an expansion, kept for the proofs of the frames to come.
+//!
+//! Its vertices, re-evaluated at other poses, are again points of the Minkowski difference, and its
+//! triangles a closed surface, oriented outwards. Where the origin is on the inner side of all of
+//! their planes, at least `d` away from each, the surface winds around the ball of radius `d` about
+//! it. So the ball is in the convex hull of the vertices and in the difference: no direction has a
+//! smaller depth than `d`. Whether the surface is still convex does not matter, nor which pair it
+//! is of.
+
+use glam::DVec3;
+
+use super::EpaScratch;
+use super::polytope::{ExpandingPolytope, lesser};
+use crate::stats::Cost;
+use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
+use crate::tolerance::DEPTH_GAP;
+
+/// Where hulls of a thousand vertices overlap by a fifth of their size, nineteen are usual.
+const MOST_VERTICES: usize = 32;
+/// A closed surface of triangles has no more.
+const MOST_FACES: usize = 2 * MOST_VERTICES - 4;
+
+/// A ball that stands out of a surface by more than a tenth is not that of the frame before: to
+/// start from the present features costs less.
+const NEAR: f64 = 0.9;
+/// A surface that has to grow more than this is no better to start from than they are.
+const MAX_EXPANSIONS: usize = 12;
+
+/// A shell proves less than the search would by this share of its tolerance: far beyond rounding.
+/// What it proves the search would find, too, whatever is kept of the pair or lost.
+const CERTAIN: f64 = 0.999;
+
+/// Stands for the difference's centre.
+const CENTER: [u16; 2] = [u16::MAX; 2];
+
+/// A polytope inside of a Minkowski difference, without coordinates.
+#[derive(Clone, Debug)]
+pub struct Shell {
+    /// The vertices of the two shapes that each is the difference of.
+    vertices: [[u16; 2]; MOST_VERTICES],
+    /// Counter-clockwise seen from outside.
+    faces: [[u8; 3]; MOST_FACES],
+    vertex_count: u8,
+    /// Without faces it proves nothing.
+    face_count: u8,
+}
+
+impl Default for Shell {
+    fn default() -> Self {
+        Self {
+            vertices: [[0; 2]; MOST_VERTICES],
+            faces: [[0; 3]; MOST_FACES],
+            vertex_count: 0,
+            face_count: 0,
+        }
+    }
+}
+
+impl Shell {
+    /// Whether [`penetration_below`](super::penetration_below) would say that the depth is known, as
+    /// far as this surface can tell, or what it grows to in a few expansions.
+    pub fn proves<A: Polytope, B: Polytope>(
+        &mut self,
+        cso: &Cso<'_, A, B>,
+        known_depth: f64,
+        scratch: &mut EpaScratch,
+        cost: &mut Cost,
+    ) -> bool {
+        let radius = known_depth - CERTAIN * DEPTH_GAP * cso.smaller_radius();
+        let polytope = &mut scratch.polytope;
+        polytope.clear(cso.size(), radius);
+        for &name in &self.vertices[..self.vertex_count.into()] {
+            match named(name, cso) {
+                Some(vertex) => polytope.push(vertex),
+                None => return false,
+            }
+        }
+        let distance = self.distance(polytope);
+        distance >= radius || distance > NEAR * radius && self.grow(cso, radius, scratch, cost)
+    }
+
+    fn faces(&self) -> &[[u8; 3]] {
+        &self.faces[..self.face_count.into()]
+    }
+
+    /// That of the origin from the nearest of all planes, if it is on their inner side; else, or if
+    /// there is none, infinitely negative.
+    fn distance(&self, polytope: &ExpandingPolytope) -> f64 {
+        let mut least = f64::INFINITY;
+        for face in self.faces() {
+            let [a, b, c] = face.map(|v| polytope.vertex(v.into()).w);
+            let outward = (b - a).cross(c - a);
+            let height = outward.dot(a);
+            let squared = height * height / outward.length_squared();
+            // Also of a face without area, whose distance is no number.
+            if !(height > 0.0 && squared > 0.0) {
+                return f64::NEG_INFINITY;
+            }
+            least = lesser(least, squared);
+        }
+        if self.face_count > 0 {
+            least.sqrt()
+        } else {
+            f64::NEG_INFINITY
+        }
+    }
+
+    /// Grows where the ball stands out; `false`, and nothing changed, if that does not help.
+    fn grow<A: Polytope, B: Polytope>(
+        &mut self,
+        cso: &Cso<'_, A, B>,
+        radius: f64,
+        scratch: &mut EpaScratch,
+        cost: &mut Cost,
+    ) -> bool {
+        let polytope = &mut scratch.polytope;
+        polytope.add_surface(self.faces());
+        for _ in 0..MAX_EXPANSIONS {
+            let Some(face) = polytope.nearest_face() else {
+                self.keep(cso, scratch);
+                return true;
+            };
+            let (normal, _) = polytope.plane(face);
+            cost.iterations += 1;
+            let vertex = cso.support(normal, cso.start(normal), cost);
+            let is_farther = normal.dot(vertex.w) >= radius && !polytope.contains(&vertex);
+            if !is_farther || !polytope.expand(face, vertex) {
+                return false;
+            }
+        }
+        false
+    }
+
+    /// Keeps the polytope of the last expansion in a Minkowski difference, if it is small enough.
+    pub fn keep<A: Support, B: Support>(&mut self, cso: &Cso<'_, A, B>, scratch: &EpaScratch) {
+        if self.copy(&scratch.polytope, cso.center()).is_none() {
+            self.face_count = 0;
+        }
+    }
+
+    fn copy(&mut self, polytope: &ExpandingPolytope, center: DVec3) -> Option<()> {
+        const NONE: u8 = u8::MAX;
+        (self.vertex_count, self.face_count) = (0, 0);
+        // Which of our vertices those of the polytope are. Many of them are inside by now.
+        let mut numbers = [NONE; 4 * MOST_VERTICES];
+        for corners in polytope.surface() {
+            let face = self.faces.get_mut(usize::from(self.face_count))?;
+            for (corner, &vertex) in face.iter_mut().zip(corners) {
+                let number = numbers.get_mut(vertex as usize)?;
+                if *number == NONE {
+                    let name = self.vertices.get_mut(usize::from(self.vertex_count))?;
+                    *name = name_of(polytope.vertex(vertex), center);
+                    *number = self.vertex_count;
+                    self.vertex_count += 1;
+                }
+                *corner = *number;
+            }
+            self.face_count += 1;
+        }
+        Some(())
+    }
+}
+
+fn name_of(vertex: &CsoVertex, center: DVec3) -> [u16; 2] {
+    if vertex.w == center {
+        CENTER
+    } else {
+        vertex.ids.map(|id| id as u16)
+    }
+}
+
+/// The point with this name, if the shapes have its vertices.
+fn named<A: Polytope, B: Polytope>(name: [u16; 2], cso: &Cso<'_, A, B>) -> Option<CsoVertex> {
+    if name == CENTER {
+        return Some(cso.vertex_inside());
+    }
+    let ids @ [id_1, id_2] = name.map(VertexId::from);
+    let known = cso.shape_1.valid_start(id_1) == id_1 && cso.shape_2.valid_start(id_2) == id_2;
+    known.then(|| cso.vertex(ids))
+}
