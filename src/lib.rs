@@ -89,7 +89,7 @@
 //! let mut query = Query {
 //!     cso: &Cso { shape_1: &hull, shape_2: &hull, pose: &pose },
 //!     max_distance: f64::INFINITY,
-//!     shell: None,
+//!     shells: None,
 //!     scratch: &mut EpaScratch::default(),
 //!     cost: &mut Cost::default(),
 //! };

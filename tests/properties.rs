@@ -89,7 +89,7 @@ fn near(hulls: [&Hull; 2], pose: &Pose, memory: &Memory) -> Proximity {
             pose: &pose,
         },
         max_distance: f64::INFINITY,
-        shell: None,
+        shells: None,
         scratch: &mut EpaScratch::default(),
         cost: &mut Cost::default(),
     }

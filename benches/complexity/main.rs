@@ -9,7 +9,7 @@ use std::time::Instant;
 use families::{Cloud, direction, orbit, sphere};
 use glam::{DQuat, DVec3};
 use isa_gjk::Hull;
-use isa_gjk::epa::{EpaScratch, Shell};
+use isa_gjk::epa::{EpaScratch, Shells};
 use isa_gjk::pose::RelativePose;
 use isa_gjk::primitive::Ball;
 use isa_gjk::query::{Answer, Memory, Query};
@@ -64,7 +64,7 @@ fn measure(hulls: &[Hull; 2], poses: &[Pose], max_distance: f64, coherent: bool)
     for _ in 0..REPEATS {
         total = [0; 3];
         let mut memory = Memory::None;
-        let mut shell = Shell::default();
+        let mut shells = Shells::default();
         let clock = Instant::now();
         for pose in &poses {
             let mut cost = Cost::default();
@@ -75,7 +75,7 @@ fn measure(hulls: &[Hull; 2], poses: &[Pose], max_distance: f64, coherent: bool)
                     pose,
                 },
                 max_distance,
-                shell: coherent.then_some(&mut shell),
+                shells: coherent.then_some((&mut shells, 0)),
                 scratch: &mut scratch,
                 cost: &mut cost,
             }

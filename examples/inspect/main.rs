@@ -126,7 +126,7 @@ fn ask<'a>(
     let (answer, stage) = Query {
         cso: &cso,
         max_distance: options.prediction,
-        shell: None,
+        shells: None,
         scratch: &mut EpaScratch::default(),
         cost: &mut cost,
     }

@@ -108,7 +108,7 @@ impl Cast<'_> {
         let mut query = Query {
             cso,
             max_distance: f64::INFINITY,
-            shell: None,
+            shells: None,
             scratch: &mut scratch.epa,
             cost: &mut Cost::default(),
         };

@@ -59,7 +59,7 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         let (answer, stage) = Query {
             cso: &cso,
             max_distance,
-            shell: Some(scratch.shells.of(&*self.manifold)),
+            shells: Some((&mut scratch.shells, key_of(self.manifold))),
             scratch: &mut scratch.epa,
             cost: &mut cost,
         }
@@ -104,6 +104,11 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         }
         Some(())
     }
+}
+
+/// Where the manifold is: mostly where it was in the frame before.
+fn key_of<T>(manifold: &T) -> u64 {
+    (&raw const *manifold).addr() as u64
 }
 
 /// The contact normal as both shapes see it, outwards.

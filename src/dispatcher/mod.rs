@@ -13,7 +13,6 @@ mod pair;
 mod parts;
 mod points;
 mod scene;
-mod shells;
 mod sub_pairs;
 
 use parry3d::math::{Pose, Real, Vector};

@@ -7,8 +7,7 @@ use parry3d::math::Real;
 use parry3d::shape::{Segment as ParrySegment, Shape, ShapeType, Triangle};
 
 use super::hulls::{EachProved, Find, HullRef, HullTable};
-use super::shells::ShellTable;
-use crate::epa::EpaScratch;
+use crate::epa::{EpaScratch, Shells};
 use crate::hull::Hull;
 use crate::hull_shape::HullShape;
 use crate::manifold::ClipScratch;
@@ -28,7 +27,7 @@ struct Workbench {
 pub(super) struct Scratch {
     pub epa: EpaScratch,
     pub clip: ClipScratch,
-    pub shells: ShellTable,
+    pub shells: Shells,
 }
 
 thread_local! {

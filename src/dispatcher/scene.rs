@@ -258,7 +258,7 @@ impl PairVisitor for ContactQuery<'_> {
         let (answer, _) = Query {
             cso: &cso,
             max_distance: f64::from(self.prediction) + borders[0] + borders[1],
-            shell: None,
+            shells: None,
             scratch: &mut scratch.epa,
             cost: &mut Cost::default(),
         }

@@ -12,8 +12,9 @@
 mod polytope;
 mod seed;
 mod shell;
+mod shells;
 
-pub use shell::Shell;
+pub use shells::Shells;
 
 use glam::DVec3;
 

@@ -35,7 +35,7 @@ const CENTER: [u16; 2] = [u16::MAX; 2];
 
 /// A polytope inside of a Minkowski difference, without coordinates.
 #[derive(Clone, Debug)]
-pub struct Shell {
+pub(super) struct Shell {
     /// The vertices of the two shapes that each is the difference of.
     vertices: [[u16; 2]; MOST_VERTICES],
     /// Counter-clockwise seen from outside.
@@ -59,7 +59,7 @@ impl Default for Shell {
 impl Shell {
     /// Whether [`penetration_below`](super::penetration_below) would say that the depth is known, as
     /// far as this surface can tell, or what it grows to in a few expansions.
-    pub fn proves<A: Polytope, B: Polytope>(
+    pub fn prove<A: Polytope, B: Polytope>(
         &mut self,
         cso: &Cso<'_, A, B>,
         known_depth: f64,

@@ -275,7 +275,7 @@ mod tests {
             let answer = Query {
                 cso: &cso,
                 max_distance: 0.1,
-                shell: None,
+                shells: None,
                 scratch: &mut EpaScratch::default(),
                 cost: &mut Cost::default(),
             }

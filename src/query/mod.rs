@@ -21,7 +21,7 @@ pub use feature::{Feature, vertices};
 
 use glam::DVec3;
 
-use crate::epa::{self, Depth, EpaScratch, Penetration, Shell};
+use crate::epa::{self, Depth, EpaScratch, Penetration, Shells};
 use crate::gjk::{self, Closest, Outcome, SeparatingAxis};
 use crate::simplex::Preferred;
 use crate::stats::{Cost, Stage};
@@ -86,9 +86,9 @@ pub struct Query<'a, 'c, A, B> {
     pub cso: &'a Cso<'c, A, B>,
     /// Answers beyond this distance are [`Answer::Apart`].
     pub max_distance: f64,
-    /// The polytope of the pair's last expansion, if the pair has a next frame. It saves work, and
-    /// changes no bit of an answer.
-    pub shell: Option<&'a mut Shell>,
+    /// Polytopes of earlier expansions, and the pair's key among them. They save work where a deep
+    /// pair is asked about in every frame, and change no bit of an answer.
+    pub shells: Option<(&'a mut Shells, u64)>,
     /// Memory for the expanding polytope.
     pub scratch: &'a mut EpaScratch,
     /// Filled in with what the query cost.
@@ -242,8 +242,8 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     /// far.
     fn find_depth(&mut self, candidate: &Proximity, gjk: [Stage; 2]) -> Option<(Answer, Stage)> {
         let known = -candidate.signed_distance;
-        if let Some(shell) = &mut self.shell
-            && shell.proves(self.cso, known, self.scratch, self.cost)
+        if let Some((shells, key)) = &mut self.shells
+            && shells.prove(*key, self.cso, known, self.scratch, self.cost)
         {
             return Some((Answer::Near(*candidate), Stage::Shell));
         }
@@ -272,8 +272,8 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     fn expand(&mut self, seeds: &[CsoVertex], known_depth: f64) -> Option<Depth> {
         let (cso, scratch) = (self.cso, &mut *self.scratch);
         let depth = epa::penetration_below(cso, seeds, known_depth, scratch, self.cost);
-        if let Some(shell) = &mut self.shell {
-            shell.keep(cso, scratch);
+        if let Some((shells, key)) = &mut self.shells {
+            shells.keep(*key, cso, scratch);
         }
         depth
     }

@@ -6,7 +6,7 @@ mod common;
 use common::generate::Dice;
 use glam::{DQuat, DVec3};
 use isa_gjk::Hull;
-use isa_gjk::epa::{EpaScratch, Shell, penetration};
+use isa_gjk::epa::{EpaScratch, Shells, penetration};
 use isa_gjk::pose::RelativePose;
 use isa_gjk::query::{Answer, Memory, Query};
 use isa_gjk::stats::{Cost, Stage};
@@ -51,12 +51,12 @@ fn ask(
     hulls: &[Hull; 2],
     pose: &RelativePose,
     memory: &Memory,
-    shell: Option<&mut Shell>,
+    shells: Option<(&mut Shells, u64)>,
 ) -> (Answer, Stage) {
     let query = Query {
         cso: &cso(hulls, pose),
         max_distance: 0.01,
-        shell,
+        shells,
         scratch: &mut EpaScratch::default(),
         cost: &mut Cost::default(),
     }
@@ -85,19 +85,19 @@ fn remembered(answer: &Answer) -> Memory {
 fn no_bit_of_an_answer_depends_on_the_shell() {
     let mut dice = Dice::new(71);
     let mut proved = [0; 2];
-    let mut shared = Shell::default();
+    let mut shells = Shells::default();
+    const SHARED: u64 = u64::MAX;
     for round in 0..120 {
         let hulls = [(); 2].map(|()| hull([8, 20, 90, 400][round % 4], &mut dice));
         let depth = [0.01, 0.1, 0.4, 1.2][round / 4 % 4];
         let motion = Motion::new(&mut dice, depth, [0.1, 1.0, 10.0][round % 3]);
-        let mut own = Shell::default();
         let mut memory = Memory::None;
         for frame in 0..40 {
             let pose = motion.at(frame);
             let (answer, stage) = ask(&hulls, &pose, &memory, None);
             assert_ne!(stage, Stage::Shell, "there is none");
-            for (shell, proved) in [&mut own, &mut shared].into_iter().zip(&mut proved) {
-                let (other, stage) = ask(&hulls, &pose, &memory, Some(shell));
+            for (key, proved) in [round as u64, SHARED].into_iter().zip(&mut proved) {
+                let (other, stage) = ask(&hulls, &pose, &memory, Some((&mut shells, key)));
                 // Debug prints all digits.
                 assert_eq!(
                     format!("{answer:?}"),
@@ -119,7 +119,7 @@ fn no_bit_of_an_answer_depends_on_the_shell() {
 #[test]
 fn what_a_shell_proves_is_true() {
     let mut dice = Dice::new(72);
-    let mut shell = Shell::default();
+    let mut shells = Shells::default();
     let mut outcomes = [0; 2];
     let (mut overlapping, mut own) = (0, 0);
     for round in 0..4_000 {
@@ -136,17 +136,17 @@ fn what_a_shell_proves_is_true() {
             };
             for claimed in [0.6, 0.95, 1.0, 1.0 + 1e-5, 1.1].map(|share| share * true_depth) {
                 let tolerance = TOLERANCE * cso.smaller_radius();
-                let proves = shell.proves(&cso, claimed, scratch, cost);
+                let proves = shells.prove(0, &cso, claimed, scratch, cost);
                 assert!(!proves || true_depth >= claimed - tolerance, "{round}");
                 outcomes[usize::from(proves)] += usize::from(true_depth > 0.0);
             }
             if frame == 0 {
                 penetration(&cso, &[], scratch, cost);
-                shell.keep(&cso, scratch);
+                shells.keep(0, &cso, scratch);
                 let radius = cso.smaller_radius();
-                own += usize::from(shell.proves(&cso, true_depth, scratch, cost));
+                own += usize::from(shells.prove(0, &cso, true_depth, scratch, cost));
                 overlapping += usize::from(true_depth > 0.0);
-                assert!(!shell.proves(&cso, true_depth + 1e-5 * radius, scratch, cost));
+                assert!(!shells.prove(0, &cso, true_depth + 1e-5 * radius, scratch, cost));
             }
         }
     }
@@ -164,6 +164,47 @@ fn an_empty_shell_proves_nothing() {
     let pose = Motion::new(&mut dice, 1.0, 0.0).at(0);
     for depth in [-1.0, 0.0, 1e-9, 0.5] {
         let (scratch, cost) = (&mut EpaScratch::default(), &mut Cost::default());
-        assert!(!Shell::default().proves(&cso(&hulls, &pose), depth, scratch, cost));
+        assert!(!Shells::default().prove(0, &cso(&hulls, &pose), depth, scratch, cost));
     }
+}
+
+/// Twice as many pairs as there are places: those that came first keep theirs while they are of use,
+/// and lose them when they are not.
+#[test]
+fn pairs_that_share_a_place_do_not_drive_each_other_out() {
+    const PAIRS: u64 = 4_096;
+    let mut dice = Dice::new(74);
+    let hulls = [(); 2].map(|()| hull(12, &mut dice));
+    let pose = Motion::new(&mut dice, 1.7, 0.0).at(0);
+    let cso = cso(&hulls, &pose);
+    let (scratch, cost) = (&mut EpaScratch::default(), &mut Cost::default());
+    let found = penetration(&cso, &[], scratch, cost).expect("finite solids");
+    assert!(found.depth > 0.1, "they overlap");
+    let expanded = scratch.clone();
+    let mut shells = Shells::default();
+    let mut frame = |pairs: std::ops::Range<u64>| {
+        let mut proved = Vec::new();
+        for key in pairs {
+            if shells.prove(key, &cso, found.depth, scratch, cost) {
+                proved.push(key);
+            } else {
+                shells.keep(key, &cso, &expanded);
+            }
+        }
+        proved
+    };
+    assert!(frame(0..PAIRS / 2).is_empty(), "nothing was kept");
+    let first = frame(0..PAIRS / 2);
+    assert!(first.len() > 1_000, "{} of the first pairs", first.len());
+    let crowd = frame(0..PAIRS);
+    assert!(
+        first.iter().all(|key| crowd.contains(key)),
+        "driven out at once"
+    );
+    // Pairs that are no longer asked about give way.
+    for _ in 0..40 {
+        frame(PAIRS / 2..PAIRS);
+    }
+    let second = frame(PAIRS / 2..PAIRS);
+    assert!(second.len() > 1_000, "{} of the later pairs", second.len());
 }
