@@ -67,6 +67,11 @@ pub trait Polytope: Support {
     /// The `i`-th vertex of a face, counter-clockwise seen from outside.
     fn face_vertex(&self, face: FaceId, i: usize) -> VertexId;
 
+    /// The corners of a face, counter-clockwise seen from outside.
+    fn corners(&self, face: FaceId) -> impl Iterator<Item = DVec3> {
+        (0..self.face_len(face)).map(move |i| self.vertex(self.face_vertex(face, i)))
+    }
+
     /// The face at `vertex` that looks most in direction `dir`.
     fn face_at(&self, vertex: VertexId, dir: DVec3) -> FaceId;
 

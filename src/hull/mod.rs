@@ -166,6 +166,12 @@ impl Polytope for Hull {
     }
 
     #[inline]
+    fn corners(&self, face: FaceId) -> impl Iterator<Item = DVec3> {
+        let corners = self.faces.polygon(face).iter();
+        corners.map(|corner| self.vertex(corner.vertex.into()))
+    }
+
+    #[inline]
     fn face_at(&self, vertex: VertexId, dir: DVec3) -> FaceId {
         self.faces.most_aligned(self.graph.faces_at(vertex), dir)
     }

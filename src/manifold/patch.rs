@@ -134,17 +134,13 @@ impl<'s> Patch<'s> {
         slack: f64,
     ) -> &'p mut [ClipVertex] {
         let [f1, f2] = self.polygons();
-        let corner_1 = |i| cso.shape_1.vertex(cso.shape_1.face_vertex(f1, i));
-        let corner_2 = |i| cso.shape_2.vertex(cso.shape_2.face_vertex(f2, i));
         let frame_2 = self.frame.seen_from_2(cso.pose);
+        let window = cso.shape_1.corners(f1).map(|p| self.frame.flatten(p));
         polygons.window.clear();
-        polygons
-            .window
-            .extend((0..cso.shape_1.face_len(f1)).map(|i| self.frame.flatten(corner_1(i))));
+        polygons.window.extend(window);
+        let subject = cso.shape_2.corners(f2).map(|p| frame_2.flatten(p));
         polygons.subject.clear();
-        polygons
-            .subject
-            .extend((0..cso.shape_2.face_len(f2)).map(|i| frame_2.flatten(corner_2(i))));
+        polygons.subject.extend(subject);
         clip::intersect(polygons, slack)
     }
 
