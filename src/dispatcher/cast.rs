@@ -5,9 +5,8 @@ use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus};
 use parry3d::shape::Shape;
 
-use super::pair::{self, PairVisitor, Scratch};
+use super::pair::{self, Pair, PairVisitor, Scratch};
 use super::scene::{Near, Seen};
-use crate::hull::Hull;
 use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Query};
 use crate::ray_cast::{Impact, RayCast, ray_cast};
@@ -42,32 +41,17 @@ struct Cast<'a> {
 impl PairVisitor for Cast<'_> {
     type Answer = Option<ShapeCastHit>;
 
-    fn visit<B: Polytope>(
-        self,
-        hull: &Hull,
-        other: &B,
-        borders: [f64; 2],
-        swapped: bool,
-        scratch: &mut Scratch,
-    ) -> Option<Self::Answer> {
+    fn visit<B: Polytope>(self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer> {
         let moves = self.velocity.is_finite() && self.velocity != Vector::ZERO;
         if !(moves && RelativePose::is_valid(self.pos12)) {
             return Some(None);
         }
-        let pose = RelativePose::of_first(self.pos12, swapped);
-        let cso = Cso {
-            shape_1: hull,
-            shape_2: other,
-            pose: &pose,
-        };
-        let seen = Seen {
-            pose: &pose,
-            borders,
-            swapped,
-        };
+        let pose = pair.pose(self.pos12);
+        let cso = pair.cso(&pose);
+        let seen = Seen::new(pair, &pose);
         // That of the other shape as the hull sees it.
         let velocity = self.velocity.as_dvec3();
-        let velocity = if swapped {
+        let velocity = if pair.swapped {
             -pose.direction_to_1(velocity)
         } else {
             velocity
@@ -76,7 +60,7 @@ impl PairVisitor for Cast<'_> {
             &cso,
             velocity,
             self.options.max_time_of_impact.into(),
-            self.target_distance() + borders[0] + borders[1],
+            pair.between_cores(self.target_distance()),
             &mut Cost::default(),
         );
         match impact {
@@ -93,8 +77,8 @@ impl PairVisitor for Cast<'_> {
 
 impl Cast<'_> {
     /// Not negative, and not NaN.
-    fn target_distance(&self) -> f64 {
-        f64::from(self.options.target_distance).max(0.0)
+    fn target_distance(&self) -> Real {
+        self.options.target_distance.max(0.0)
     }
 
     /// Shapes that are within the target distance from the beginning.
@@ -121,7 +105,7 @@ impl Cast<'_> {
         }
         let near = Near::of_proximity(&near, seen);
         let slack = RAY_TOUCHING * cso.size();
-        let status = if near.signed_distance < self.target_distance() - slack {
+        let status = if near.signed_distance < f64::from(self.target_distance()) - slack {
             ShapeCastStatus::PenetratingOrWithinTargetDist
         } else {
             ShapeCastStatus::Converged

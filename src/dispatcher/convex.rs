@@ -6,11 +6,11 @@ use parry3d::query::ContactManifold;
 use parry3d::query::details::NormalConstraintsPair;
 
 use super::constraints::Constraints;
-use super::pair::{PairVisitor, Scratch};
+use super::pair::{HalfSpace, Pair, PairVisitor, Scratch};
 use super::points::write_points;
 use super::{cache, half_space};
 use crate::hull::Hull;
-use crate::manifold;
+use crate::manifold::{self, ClipScratch};
 use crate::pose::RelativePose;
 use crate::query::{Answer, Proximity, Query};
 use crate::stats::{Cost, SharedStats, Stage};
@@ -36,25 +36,15 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
 
     const HALF_SPACES: bool = true;
 
-    #[inline]
-    fn visit<B: Polytope>(
-        self,
-        hull: &Hull,
-        other: &B,
-        borders: [f64; 2],
-        swapped: bool,
-        scratch: &mut Scratch,
-    ) -> Option<()> {
+    // In a call the pair would go through memory, which small queries notice.
+    #[inline(always)]
+    fn visit<B: Polytope>(self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<()> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
         }
-        let pose = RelativePose::of_first(self.pos12, swapped);
-        let cso = Cso {
-            shape_1: hull,
-            shape_2: other,
-            pose: &pose,
-        };
-        let max_distance = f64::from(self.prediction) + borders[0] + borders[1];
+        let pose = pair.pose(self.pos12);
+        let cso = pair.cso(&pose);
+        let max_distance = pair.between_cores(self.prediction);
         let mut cost = Cost::default();
         let (answer, stage) = Query {
             cso: &cso,
@@ -63,44 +53,37 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             scratch: &mut scratch.epa,
             cost: &mut cost,
         }
-        .run(&cache::read(self.manifold, swapped))?;
+        .run(&cache::read(self.manifold, pair.swapped))?;
         self.stats.record(stage, &cost);
         match answer {
             Answer::Apart(apart) => cache::write_axis(self.manifold, &apart),
             Answer::Near(near) => {
-                self.write_contacts(&cso, &near, max_distance, borders, swapped, scratch);
+                self.write_contacts(pair, &cso, &near, max_distance, &mut scratch.clip);
             }
         }
         Some(())
     }
 
-    fn visit_half_space(
-        self,
-        hull: &Hull,
-        normal: DVec3,
-        border: f64,
-        swapped: bool,
-        scratch: &mut Scratch,
-    ) -> Option<()> {
+    fn visit_half_space(self, pair: &Pair<'_, HalfSpace>, scratch: &mut Scratch) -> Option<()> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
         }
-        let pose = RelativePose::of_first(self.pos12, swapped);
-        let max_distance = f64::from(self.prediction) + border;
+        let pose = pair.pose(self.pos12);
+        let max_distance = pair.between_cores(self.prediction);
         let mut cost = Cost::default();
-        let memory = cache::read(self.manifold, swapped);
-        let near = half_space::deepest(hull, normal, &pose, &memory, &mut cost);
+        let memory = cache::read(self.manifold, pair.swapped);
+        let near = half_space::deepest(pair, &pose, &memory, &mut cost);
         if near.signed_distance > max_distance {
             self.stats.record(Stage::Axis, &cost);
             cache::write_axis(self.manifold, &half_space::axis(&near));
         } else {
             self.stats.record(Stage::Feature, &cost);
             let contacts =
-                manifold::half_space_contacts(hull, &near, max_distance, &mut scratch.clip);
-            let [n1, n2] = cache::ordered(normals(&near, &pose), swapped);
+                manifold::half_space_contacts(pair.hull, &near, max_distance, &mut scratch.clip);
+            let [n1, n2] = cache::ordered(normals(&near, &pose), pair.swapped);
             self.manifold.local_n1 = n1.as_vec3();
             self.manifold.local_n2 = n2.as_vec3();
-            write_points(self.manifold, &pose, &contacts, [border, 0.0], swapped);
+            write_points(self.manifold, &pose, &contacts, pair.borders, pair.swapped);
         }
         Some(())
     }
@@ -119,13 +102,13 @@ fn normals(near: &Proximity, pose: &RelativePose) -> [DVec3; 2] {
 impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
     fn write_contacts<B: Polytope>(
         self,
+        pair: &Pair<'_, B>,
         cso: &Cso<'_, Hull, B>,
         near: &Proximity,
         max_distance: f64,
-        borders: [f64; 2],
-        swapped: bool,
-        scratch: &mut Scratch,
+        scratch: &mut ClipScratch,
     ) {
+        let swapped = pair.swapped;
         let [mut n1, mut n2] =
             cache::ordered(normals(near, cso.pose), swapped).map(|n| n.as_vec3());
         let unconstrained = n1;
@@ -138,15 +121,15 @@ impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
             return;
         }
         let contacts = if n1 == unconstrained {
-            manifold::contacts(cso, near, max_distance, &mut scratch.clip)
+            manifold::contacts(cso, near, max_distance, scratch)
         } else {
             let [normal, _] = cache::ordered([n1, n2], swapped);
             let normal = normal.as_dvec3().normalize();
             let limit = ABSURD_DEPTH * near.signed_distance.min(0.0);
-            manifold::contacts_along(cso, near, normal, [limit, max_distance], &mut scratch.clip)
+            manifold::contacts_along(cso, near, normal, [limit, max_distance], scratch)
         };
         self.manifold.local_n1 = n1;
         self.manifold.local_n2 = n2;
-        write_points(self.manifold, cso.pose, &contacts, borders, swapped);
+        write_points(self.manifold, cso.pose, &contacts, pair.borders, swapped);
     }
 }

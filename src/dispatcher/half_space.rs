@@ -1,23 +1,20 @@
 //! Hulls over half-spaces: one support against the plane is the whole query.
 
-use glam::DVec3;
-
+use super::pair::{HalfSpace, Pair};
 use crate::gjk::SeparatingAxis;
-use crate::hull::Hull;
 use crate::pose::RelativePose;
 use crate::query::{Feature, Memory, Proximity};
 use crate::stats::Cost;
 use crate::support::Support;
 
-/// The vertex of a hull that is deepest in the half-space of this outward normal, through the
-/// origin of frame 2.
+/// The vertex of a hull that is deepest in a half-space.
 pub(super) fn deepest(
-    hull: &Hull,
-    normal_2: DVec3,
+    pair: &Pair<'_, HalfSpace>,
     pose: &RelativePose,
     memory: &Memory,
     cost: &mut Cost,
 ) -> Proximity {
+    let (hull, normal_2) = (pair.hull, pair.other.normal);
     let normal = -pose.direction_to_1(normal_2);
     let start = match *memory {
         Memory::Axis(_, [vertex, _]) | Memory::Contact(_, [Feature::Vertex(vertex), _]) => {

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 
 use glam::DVec3;
-use parry3d::math::Real;
+use parry3d::math::{Pose, Real};
 use parry3d::shape::{Segment as ParrySegment, Shape, ShapeType, Triangle};
 
 use super::hulls::{EachProved, Find, HullRef, HullTable};
@@ -11,8 +11,9 @@ use crate::epa::{EpaScratch, Shells};
 use crate::hull::Hull;
 use crate::hull_shape::HullShape;
 use crate::manifold::ClipScratch;
+use crate::pose::RelativePose;
 use crate::primitive::{Ball, CuboidPolytope, Segment, TrianglePolytope};
-use crate::support::Polytope;
+use crate::support::{Cso, Polytope};
 use crate::tolerance::THINNEST;
 
 /// What a thread keeps from query to query: prepared hulls, and memory to work in.
@@ -57,8 +58,49 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// Something to do with a hull and another shape, which is `swapped` in front of it in the pair.
-/// `borders` are the radii of the rounded borders around the hull and the other shape.
+/// A hull and another shape, as the kernels see a pair: in the frame of the hull.
+pub(super) struct Pair<'a, B> {
+    pub hull: &'a Hull,
+    pub other: &'a B,
+    /// The radii of the rounded borders around them.
+    pub borders: [f64; 2],
+    /// The hull is the second of the shapes that were asked about.
+    pub swapped: bool,
+}
+
+/// The half-space beneath the plane through its origin with this normal.
+pub(super) struct HalfSpace {
+    pub normal: DVec3,
+}
+
+impl<'a, B> Pair<'a, B> {
+    /// Of the other shape. That of the shapes asked about is valid.
+    #[inline(always)]
+    pub fn pose(&self, pos12: &Pose) -> RelativePose {
+        RelativePose::of_first(pos12, self.swapped)
+    }
+
+    /// Without borders.
+    #[inline(always)]
+    pub fn cso<'c>(&self, pose: &'c RelativePose) -> Cso<'c, Hull, B>
+    where
+        'a: 'c,
+    {
+        Cso {
+            shape_1: self.hull,
+            shape_2: self.other,
+            pose,
+        }
+    }
+
+    /// How far apart they are without borders, if with them it is as far as this.
+    #[inline(always)]
+    pub fn between_cores(&self, distance: Real) -> f64 {
+        f64::from(distance) + self.borders[0] + self.borders[1]
+    }
+}
+
+/// Something to do with a pair.
 pub(super) trait PairVisitor: Sized {
     /// What comes of it; with `None` the pair is left to parry.
     type Answer;
@@ -67,25 +109,15 @@ pub(super) trait PairVisitor: Sized {
     const HALF_SPACES: bool = false;
 
     /// The other shape is a polytope.
-    fn visit<B: Polytope>(
-        self,
-        hull: &Hull,
-        other: &B,
-        borders: [f64; 2],
-        swapped: bool,
-        scratch: &mut Scratch,
-    ) -> Option<Self::Answer>;
+    fn visit<B: Polytope>(self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer>;
 
-    /// The other shape is the half-space beneath the plane through its origin with this normal.
+    /// The other shape is a half-space.
     fn visit_half_space(
         self,
-        hull: &Hull,
-        normal: DVec3,
-        border: f64,
-        swapped: bool,
+        pair: &Pair<'_, HalfSpace>,
         scratch: &mut Scratch,
     ) -> Option<Self::Answer> {
-        let _ = (hull, normal, border, swapped, scratch);
+        let _ = (pair, scratch);
         None
     }
 }
@@ -166,9 +198,13 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
             hulls.make_room();
             let first = side_1.prepare(type_1, hulls)?;
             let second = side_2.prepare(type_2, hulls)?;
-            let borders = [first.border, second.border];
-            let (first, second) = (first.hull(hulls)?, second.hull(hulls)?);
-            visitor.visit(first, second, borders, false, scratch)
+            let pair = Pair {
+                hull: first.hull(hulls)?,
+                other: second.hull(hulls)?,
+                borders: [first.border, second.border],
+                swapped: false,
+            };
+            visitor.visit(&pair, scratch)
         }),
         [true, false] => Besides::new(side_1, type_1, false).visit(shape_2, type_2, visitor),
         [false, true] => Besides::new(side_2, type_2, true).visit(shape_1, type_1, visitor),
@@ -234,9 +270,9 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
             }
             ShapeType::HalfSpace if V::HALF_SPACES => {
                 let normal = other.as_halfspace()?.normal.as_dvec3().try_normalize()?;
-                let swapped = self.swapped;
-                self.with_hull(|hull, border, scratch| {
-                    visitor.visit_half_space(hull, normal, border, swapped, scratch)
+                let half_space = HalfSpace { normal };
+                self.with(&half_space, 0.0, |pair, scratch| {
+                    visitor.visit_half_space(pair, scratch)
                 })
             }
             _ => None,
@@ -250,23 +286,27 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
         border: Real,
         visitor: V,
     ) -> Option<V::Answer> {
-        let swapped = self.swapped;
-        self.with_hull(|hull, hull_border, scratch| {
-            let borders = [hull_border, border.into()];
-            visitor.visit(hull, other, borders, swapped, scratch)
-        })
+        self.with(other, border, |pair, scratch| visitor.visit(pair, scratch))
     }
 
-    /// Hands over the hull and its border.
+    /// Hands over the hull together with the other shape.
     #[inline]
-    fn with_hull<T>(
+    fn with<B, T>(
         mut self,
-        visit: impl FnOnce(&Hull, f64, &mut Scratch) -> Option<T>,
+        other: &B,
+        border: Real,
+        visit: impl FnOnce(&Pair<'_, B>, &mut Scratch) -> Option<T>,
     ) -> Option<T> {
         WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
             hulls.make_room();
             let prepared = self.side.prepare(self.shape_type, hulls)?;
-            visit(prepared.hull(hulls)?, prepared.border, scratch)
+            let pair = Pair {
+                hull: prepared.hull(hulls)?,
+                other,
+                borders: [prepared.border, border.into()],
+                swapped: self.swapped,
+            };
+            visit(&pair, scratch)
         })
     }
 }

@@ -9,14 +9,13 @@ use parry3d::shape::Shape;
 
 use super::cache::ordered;
 use super::half_space;
-use super::pair::{self, PairVisitor, Scratch};
+use super::pair::{self, HalfSpace, Pair, PairVisitor, Scratch};
 use crate::gjk::{self, Closest, Outcome};
-use crate::hull::Hull;
 use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Proximity, Query};
 use crate::simplex::Preferred;
 use crate::stats::Cost;
-use crate::support::{Cso, Polytope};
+use crate::support::Polytope;
 
 /// Whether two shapes touch or overlap. `None`, here and below: not a pair for us.
 pub(super) fn intersect(pos12: &Pose, shape_1: &dyn Shape, shape_2: &dyn Shape) -> Option<bool> {
@@ -88,12 +87,20 @@ impl Near {
 /// How the kernels see a pair: the hull first, in whose frame they answer.
 pub(super) struct Seen<'a> {
     /// Of the other shape, in the frame of the hull.
-    pub pose: &'a RelativePose,
-    pub borders: [f64; 2],
-    pub swapped: bool,
+    pose: &'a RelativePose,
+    borders: [f64; 2],
+    swapped: bool,
 }
 
-impl Seen<'_> {
+impl<'a> Seen<'a> {
+    pub fn new<B>(pair: &Pair<'_, B>, pose: &'a RelativePose) -> Self {
+        Self {
+            pose,
+            borders: pair.borders,
+            swapped: pair.swapped,
+        }
+    }
+
     /// From the normal and the points of the cores, in the frame of the hull.
     pub fn near(&self, normal: DVec3, [on_1, on_2]: [DVec3; 2], distance: f64) -> Near {
         let normals = [normal, -self.pose.direction_to_2(normal)];
@@ -150,27 +157,14 @@ impl PairVisitor for SeparationQuery<'_> {
 
     const HALF_SPACES: bool = true;
 
-    fn visit<B: Polytope>(
-        self,
-        hull: &Hull,
-        other: &B,
-        borders: [f64; 2],
-        swapped: bool,
-        _scratch: &mut Scratch,
-    ) -> Option<Self::Answer> {
-        let pose = pose_seen(self.pos12, swapped)?;
-        let cso = Cso {
-            shape_1: hull,
-            shape_2: other,
-            pose: &pose,
-        };
-        let seen = Seen {
-            pose: &pose,
-            borders,
-            swapped,
-        };
+    fn visit<B: Polytope>(self, pair: &Pair<'_, B>, _: &mut Scratch) -> Option<Self::Answer> {
+        if !RelativePose::is_valid(self.pos12) {
+            return None;
+        }
+        let pose = pair.pose(self.pos12);
+        let cso = pair.cso(&pose);
         let cost = &mut Cost::default();
-        let max_distance = f64::from(self.max_distance) + borders[0] + borders[1];
+        let max_distance = pair.between_cores(self.max_distance);
         if cso.test_balls(max_distance).is_some() {
             return Some(Separation::Beyond);
         }
@@ -183,19 +177,15 @@ impl PairVisitor for SeparationQuery<'_> {
         Some(match outcome {
             Outcome::Apart(_) => Separation::Beyond,
             Outcome::Overlap(_) => Separation::None,
-            Outcome::Near(closest) => Separation::of(Near::of_closest(&closest, &seen)),
+            Outcome::Near(closest) => {
+                let seen = Seen::new(pair, &pose);
+                Separation::of(Near::of_closest(&closest, &seen))
+            }
         })
     }
 
-    fn visit_half_space(
-        self,
-        hull: &Hull,
-        normal: DVec3,
-        border: f64,
-        swapped: bool,
-        _: &mut Scratch,
-    ) -> Option<Self::Answer> {
-        let near = over_half_space(hull, normal, border, self.pos12, swapped)?;
+    fn visit_half_space(self, pair: &Pair<'_, HalfSpace>, _: &mut Scratch) -> Option<Self::Answer> {
+        let near = over_half_space(pair, self.pos12)?;
         let is_near = near.signed_distance <= f64::from(self.max_distance);
         Some(if is_near {
             Separation::of(near)
@@ -205,25 +195,13 @@ impl PairVisitor for SeparationQuery<'_> {
     }
 }
 
-fn pose_seen(pos12: &Pose, swapped: bool) -> Option<RelativePose> {
-    RelativePose::is_valid(pos12).then(|| RelativePose::of_first(pos12, swapped))
-}
-
-fn over_half_space(
-    hull: &Hull,
-    normal: DVec3,
-    border: f64,
-    pos12: &Pose,
-    swapped: bool,
-) -> Option<Near> {
-    let pose = pose_seen(pos12, swapped)?;
-    let deepest = half_space::deepest(hull, normal, &pose, &Memory::None, &mut Cost::default());
-    let seen = Seen {
-        pose: &pose,
-        borders: [border, 0.0],
-        swapped,
-    };
-    Some(Near::of_proximity(&deepest, &seen))
+fn over_half_space(pair: &Pair<'_, HalfSpace>, pos12: &Pose) -> Option<Near> {
+    if !RelativePose::is_valid(pos12) {
+        return None;
+    }
+    let pose = pair.pose(pos12);
+    let deepest = half_space::deepest(pair, &pose, &Memory::None, &mut Cost::default());
+    Some(Near::of_proximity(&deepest, &Seen::new(pair, &pose)))
 }
 
 struct ContactQuery<'a> {
@@ -236,28 +214,14 @@ impl PairVisitor for ContactQuery<'_> {
 
     const HALF_SPACES: bool = true;
 
-    fn visit<B: Polytope>(
-        self,
-        hull: &Hull,
-        other: &B,
-        borders: [f64; 2],
-        swapped: bool,
-        scratch: &mut Scratch,
-    ) -> Option<Self::Answer> {
-        let pose = pose_seen(self.pos12, swapped)?;
-        let cso = Cso {
-            shape_1: hull,
-            shape_2: other,
-            pose: &pose,
-        };
-        let seen = Seen {
-            pose: &pose,
-            borders,
-            swapped,
-        };
+    fn visit<B: Polytope>(self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer> {
+        if !RelativePose::is_valid(self.pos12) {
+            return None;
+        }
+        let pose = pair.pose(self.pos12);
         let (answer, _) = Query {
-            cso: &cso,
-            max_distance: f64::from(self.prediction) + borders[0] + borders[1],
+            cso: &pair.cso(&pose),
+            max_distance: pair.between_cores(self.prediction),
             shells: None,
             scratch: &mut scratch.epa,
             cost: &mut Cost::default(),
@@ -265,19 +229,15 @@ impl PairVisitor for ContactQuery<'_> {
         .run(&Memory::None)?;
         Some(match answer {
             Answer::Apart(_) => None,
-            Answer::Near(near) => Some(Near::of_proximity(&near, &seen).contact()),
+            Answer::Near(near) => {
+                let seen = Seen::new(pair, &pose);
+                Some(Near::of_proximity(&near, &seen).contact())
+            }
         })
     }
 
-    fn visit_half_space(
-        self,
-        hull: &Hull,
-        normal: DVec3,
-        border: f64,
-        swapped: bool,
-        _: &mut Scratch,
-    ) -> Option<Self::Answer> {
-        let near = over_half_space(hull, normal, border, self.pos12, swapped)?;
+    fn visit_half_space(self, pair: &Pair<'_, HalfSpace>, _: &mut Scratch) -> Option<Self::Answer> {
+        let near = over_half_space(pair, self.pos12)?;
         let within = near.signed_distance <= f64::from(self.prediction);
         Some(within.then(|| near.contact()))
     }
