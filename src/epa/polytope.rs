@@ -82,7 +82,7 @@ pub(super) struct ExpandingPolytope {
     horizon: Vec<HalfEdge>,
     visible: Vec<u32>,
     stack: Vec<HalfEdge>,
-    /// The sides of an added surface, by their ends.
+    /// The sides of an added surface by their ends: in rows by start.
     sides: Vec<HalfEdge>,
     coplanar: f64,
     /// A face whose plane is no nearer than this is not searched.
@@ -104,21 +104,28 @@ impl ExpandingPolytope {
         self.vertices.push(vertex);
     }
 
-    /// Adds the triangles of a closed surface over the vertices that were pushed.
-    pub fn add_surface(&mut self, triangles: &[[u8; 3]]) {
+    /// Adds the triangles of a closed surface over the vertices that were pushed; `false` if an edge
+    /// does not tell which triangles meet there: it is there twice, or has no other side.
+    pub fn add_surface(&mut self, triangles: &[[u8; 3]]) -> bool {
+        const NONE: HalfEdge = HalfEdge::MAX;
         let count = self.vertices.len();
         let place = |from: u8, to: u8| usize::from(from) * count + usize::from(to);
         self.sides.clear();
-        self.sides.resize(count * count, 0);
+        self.sides.resize(count * count, NONE);
         for (triangle, face) in triangles.iter().zip(0..) {
             for k in 0..3 {
-                self.sides[place(triangle[k], triangle[NEXT[k]])] = half_edge(face, k as u32);
+                let side = &mut self.sides[place(triangle[k], triangle[NEXT[k]])];
+                if *side != NONE {
+                    return false;
+                }
+                *side = half_edge(face, k as u32);
             }
         }
-        for triangle in triangles {
+        triangles.iter().all(|triangle| {
             let across = [0, 1, 2].map(|k| self.sides[place(triangle[NEXT[k]], triangle[k])]);
             self.add(triangle.map(u32::from), across);
-        }
+            !across.contains(&NONE)
+        })
     }
 
     /// Starts over from a tetrahedron with volume, as [`clear`](Self::clear) does.

@@ -114,7 +114,9 @@ impl Shell {
         cost: &mut Cost,
     ) -> bool {
         let polytope = &mut scratch.polytope;
-        polytope.add_surface(self.faces());
+        if !polytope.add_surface(self.faces()) {
+            return false;
+        }
         for _ in 0..MAX_EXPANSIONS {
             let Some(face) = polytope.nearest_face() else {
                 self.keep(cso, scratch);
