@@ -329,3 +329,33 @@ impl ExpandingPolytope {
 pub(super) fn lesser(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whether these triangles over five points can be added.
+    fn can_be_added(triangles: &[[u8; 3]]) -> bool {
+        let mut polytope = ExpandingPolytope::default();
+        polytope.clear(1.0, f64::INFINITY);
+        for w in [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE] {
+            polytope.push(CsoVertex {
+                w,
+                ..Default::default()
+            });
+        }
+        polytope.add_surface(triangles)
+    }
+
+    #[test]
+    fn only_surfaces_that_tell_their_neighbors_are_added() {
+        let tetrahedron = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+        assert!(can_be_added(&tetrahedron));
+        assert!(!can_be_added(&tetrahedron[..3]), "an open surface");
+        let doubled = [tetrahedron, tetrahedron].concat();
+        assert!(!can_be_added(&doubled), "two layers");
+        let other = [[0, 2, 1], [0, 1, 4], [1, 2, 4], [2, 0, 4]];
+        let pinched = [&tetrahedron[1..], &other[1..], &[[0, 2, 1], [0, 2, 1]]].concat();
+        assert!(!can_be_added(&pinched), "edges of four triangles");
+    }
+}
