@@ -13,10 +13,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use hull::hull;
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
-use trajectory::{GAPS, VERTICES, trajectory};
-
-/// Rapier's prediction distance.
-const PREDICTION: f32 = 0.002;
+use trajectory::{GAPS, PREDICTION, VERTICES, trajectory};
 
 fn queries(criterion: &mut Criterion) {
     let ours = IsaGjkDispatcher::default();

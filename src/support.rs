@@ -181,12 +181,12 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
         (-self.center()).normalize_or(DVec3::X)
     }
 
-    /// The point inside, with the vertices of no matter which.
-    pub fn vertex_inside(&self) -> CsoVertex {
+    /// The point inside as a vertex, with the names of some that are.
+    pub fn center_as_vertex(&self, ids: [VertexId; 2]) -> CsoVertex {
         CsoVertex {
             w: self.center(),
             on_1: self.shape_1.center(),
-            ids: [0; 2],
+            ids,
         }
     }
 

@@ -72,13 +72,6 @@ fn cso<'a>(hulls: &'a [Hull; 2], pose: &'a RelativePose) -> Cso<'a, Hull, Hull> 
     }
 }
 
-fn remembered(answer: &Answer) -> Memory {
-    match answer {
-        Answer::Apart(apart) => Memory::Axis(apart.axis, apart.ids),
-        Answer::Near(near) => Memory::Contact(near.normal, near.features),
-    }
-}
-
 /// Along slow and fast motions, with a shell of the pair's own, and with one that many pairs write
 /// to in turn.
 #[test]
@@ -106,7 +99,7 @@ fn no_bit_of_an_answer_depends_on_the_shell() {
                 );
                 *proved += usize::from(stage == Stage::Shell);
             }
-            memory = remembered(&answer);
+            memory = answer.memory();
         }
     }
     assert!(

@@ -12,7 +12,7 @@ use isa_gjk::Hull;
 use isa_gjk::epa::{EpaScratch, Shells};
 use isa_gjk::pose::RelativePose;
 use isa_gjk::primitive::Ball;
-use isa_gjk::query::{Answer, Memory, Query};
+use isa_gjk::query::{Memory, Query};
 use isa_gjk::stats::Cost;
 use isa_gjk::support::{Cso, Support};
 use observed::{Direction, Observation, run};
@@ -84,7 +84,7 @@ fn measure(hulls: &[Hull; 2], poses: &[Pose], max_distance: f64, coherent: bool)
             for (sum, count) in total.iter_mut().zip(counts) {
                 *sum += u64::from(count);
             }
-            memory = remember(&black_box(answer).expect("spheres have volume").0);
+            memory = black_box(answer).expect("spheres have volume").0.memory();
         }
         best = best.min(clock.elapsed().as_secs_f64());
     }
@@ -92,13 +92,6 @@ fn measure(hulls: &[Hull; 2], poses: &[Pose], max_distance: f64, coherent: bool)
     let [iterations, supports, moves] = total.map(|sum| sum as f64 / count);
     let time = best * 1.0e6 / count;
     format!("{iterations:.2} | {supports:.2} | {moves:.2} | {time:.2}")
-}
-
-fn remember(answer: &Answer) -> Memory {
-    match answer {
-        Answer::Apart(apart) => Memory::Axis(apart.axis, apart.ids),
-        Answer::Near(near) => Memory::Contact(near.normal, near.features),
-    }
 }
 
 /// Microseconds of each call of `work`, the best of a few rounds.

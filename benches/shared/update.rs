@@ -6,8 +6,7 @@ use parry3d::math::Pose;
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::SharedShape;
 
-/// Rapier's prediction distance.
-pub const PREDICTION: f32 = 0.002;
+use crate::trajectory::PREDICTION;
 
 pub type Manifolds = Vec<ContactManifold<(), ()>>;
 

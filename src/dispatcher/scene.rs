@@ -158,10 +158,7 @@ impl PairVisitor for SeparationQuery<'_> {
     const HALF_SPACES: bool = true;
 
     fn visit<B: Polytope>(self, pair: &Pair<'_, B>, _: &mut Scratch) -> Option<Self::Answer> {
-        if !RelativePose::is_valid(self.pos12) {
-            return None;
-        }
-        let pose = pair.pose(self.pos12);
+        let pose = valid_pose(pair, self.pos12)?;
         let cso = pair.cso(&pose);
         let cost = &mut Cost::default();
         let max_distance = pair.between_cores(self.max_distance);
@@ -195,11 +192,12 @@ impl PairVisitor for SeparationQuery<'_> {
     }
 }
 
+fn valid_pose<B>(pair: &Pair<'_, B>, pos12: &Pose) -> Option<RelativePose> {
+    RelativePose::is_valid(pos12).then(|| pair.pose(pos12))
+}
+
 fn over_half_space(pair: &Pair<'_, HalfSpace>, pos12: &Pose) -> Option<Near> {
-    if !RelativePose::is_valid(pos12) {
-        return None;
-    }
-    let pose = pair.pose(pos12);
+    let pose = valid_pose(pair, pos12)?;
     let deepest = half_space::deepest(pair, &pose, &Memory::None, &mut Cost::default());
     Some(Near::of_proximity(&deepest, &Seen::new(pair, &pose)))
 }
@@ -215,10 +213,7 @@ impl PairVisitor for ContactQuery<'_> {
     const HALF_SPACES: bool = true;
 
     fn visit<B: Polytope>(self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer> {
-        if !RelativePose::is_valid(self.pos12) {
-            return None;
-        }
-        let pose = pair.pose(self.pos12);
+        let pose = valid_pose(pair, self.pos12)?;
         let (answer, _) = Query {
             cso: &pair.cso(&pose),
             max_distance: pair.between_cores(self.prediction),

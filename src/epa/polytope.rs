@@ -26,6 +26,9 @@ fn number(edge: HalfEdge) -> usize {
     (edge % 4) as usize
 }
 
+/// Its triangles, counter-clockwise seen from outside if corner 3 is below (0, 1, 2).
+const TETRAHEDRON: [[u8; 3]; 4] = [[0, 1, 2], [1, 0, 3], [2, 1, 3], [0, 2, 3]];
+
 /// The number after a corner's.
 const NEXT: [usize; 3] = [1, 2, 0];
 
@@ -138,23 +141,8 @@ impl ExpandingPolytope {
         } else {
             [corners[0], corners[2], corners[1], corners[3]]
         });
-        // With corner 3 below (0, 1, 2), these turn counter-clockwise seen from outside.
-        self.add(
-            [0, 1, 2],
-            [half_edge(1, 0), half_edge(2, 0), half_edge(3, 0)],
-        );
-        self.add(
-            [1, 0, 3],
-            [half_edge(0, 0), half_edge(3, 2), half_edge(2, 1)],
-        );
-        self.add(
-            [2, 1, 3],
-            [half_edge(0, 1), half_edge(1, 2), half_edge(3, 1)],
-        );
-        self.add(
-            [0, 2, 3],
-            [half_edge(0, 2), half_edge(2, 2), half_edge(1, 1)],
-        );
+        let is_closed = self.add_surface(&TETRAHEDRON);
+        debug_assert!(is_closed, "each of its edges is there once each way");
     }
 
     /// The living face whose plane is nearest to the origin.

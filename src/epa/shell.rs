@@ -174,7 +174,7 @@ fn name_of(vertex: &CsoVertex, center: DVec3) -> [u16; 2] {
 /// The point with this name, if the shapes have its vertices.
 fn named<A: Polytope, B: Polytope>(name: [u16; 2], cso: &Cso<'_, A, B>) -> Option<CsoVertex> {
     if name == CENTER {
-        return Some(cso.vertex_inside());
+        return Some(cso.center_as_vertex([0; 2]));
     }
     let ids @ [id_1, id_2] = name.map(VertexId::from);
     let known = cso.shape_1.valid_start(id_1) == id_1 && cso.shape_2.valid_start(id_2) == id_2;

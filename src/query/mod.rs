@@ -80,6 +80,16 @@ pub enum Answer {
     Near(Proximity),
 }
 
+impl Answer {
+    /// What the next frame's query is to be given.
+    pub fn memory(&self) -> Memory {
+        match self {
+            Self::Apart(apart) => Memory::Axis(apart.axis, apart.ids),
+            Self::Near(near) => Memory::Contact(near.normal, near.features),
+        }
+    }
+}
+
 /// A query between two shapes.
 pub struct Query<'a, 'c, A, B> {
     /// The pair.
@@ -172,10 +182,10 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             Outcome::Overlap(simplex) => {
                 let mut seeds = Seeds::default();
                 simplex.vertices().for_each(|vertex| seeds.push(*vertex));
-                match self.expand(seeds.as_slice(), f64::INFINITY)? {
-                    Depth::Found(depth) => Some((self.overlapping(&depth), stages[1])),
-                    Depth::Known => None,
-                }
+                let seeds = seeds.as_slice();
+                let depth = epa::penetration(self.cso, seeds, self.scratch, self.cost)?;
+                self.keep_shell();
+                Some((self.overlapping(&depth), stages[1]))
             }
         }
     }
@@ -248,7 +258,10 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             return Some((Answer::Near(*candidate), Stage::Shell));
         }
         let seeds = Seeds::under(self.cso, candidate.features);
-        let depth = match self.expand(seeds.as_slice(), known)? {
+        let (cso, seeds) = (self.cso, seeds.as_slice());
+        let depth = epa::penetration_below(cso, seeds, known, self.scratch, self.cost)?;
+        self.keep_shell();
+        let depth = match depth {
             Depth::Found(depth) => depth,
             Depth::Known => return Some((Answer::Near(*candidate), gjk[1])),
         };
@@ -268,14 +281,11 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         Some((self.overlapping(&depth), gjk[1]))
     }
 
-    /// EPA, whose polytope is kept for the frames to come.
-    fn expand(&mut self, seeds: &[CsoVertex], known_depth: f64) -> Option<Depth> {
-        let (cso, scratch) = (self.cso, &mut *self.scratch);
-        let depth = epa::penetration_below(cso, seeds, known_depth, scratch, self.cost);
+    /// Keeps the polytope that EPA expanded for the frames to come.
+    fn keep_shell(&mut self) {
         if let Some((shells, key)) = &mut self.shells {
-            shells.keep(*key, cso, scratch);
+            shells.keep(*key, self.cso, self.scratch);
         }
-        depth
     }
 
     fn near(&self, closest: &Closest) -> Answer {

@@ -26,11 +26,7 @@ impl Seeds {
                 seeds.push(cso.vertex([*id_1, *id_2]));
             }
         }
-        seeds.push(CsoVertex {
-            w: cso.center(),
-            on_1: cso.shape_1.center(),
-            ids: [corners_1[0], corners_2[0]],
-        });
+        seeds.push(cso.center_as_vertex([corners_1[0], corners_2[0]]));
         seeds
     }
 
