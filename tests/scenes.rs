@@ -25,6 +25,7 @@ fn params(scene: Scene, hull_shape: bool) -> SceneParams {
         seed: 3,
         recycling: true,
         hull_shape,
+        unchanged_shapes: false,
         can_sleep: scene == Scene::Asleep,
     }
 }

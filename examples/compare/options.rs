@@ -63,6 +63,10 @@ pub struct Options {
     #[arg(long)]
     hull_shape: bool,
 
+    /// Tell isa-gjk that shapes do not change within a step, with `with_unchanged_shapes`
+    #[arg(long)]
+    unchanged_shapes: bool,
+
     /// Whole runs; the table shows the median of each figure and of each ratio over them
     #[arg(long, default_value_t = 1, value_parser = value_parser!(u32).range(1..=1000))]
     pub repeat: u32,
@@ -153,6 +157,7 @@ impl Options {
             seed: self.seed,
             recycling: self.recycling == Switch::On,
             hull_shape: self.hull_shape,
+            unchanged_shapes: self.unchanged_shapes,
             can_sleep: self.sleep || self.scene == Scene::Asleep,
         })
     }

@@ -19,6 +19,7 @@ pub struct Report {
     seed: u64,
     recycling: bool,
     hull_shape: bool,
+    unchanged_shapes: bool,
     warmup: usize,
     frames: usize,
     repeat: usize,
@@ -75,6 +76,7 @@ impl Report {
             seed: params.seed,
             recycling: params.recycling,
             hull_shape: params.hull_shape,
+            unchanged_shapes: params.unchanged_shapes,
             warmup: length.warmup,
             frames: length.frames,
             repeat: runs.len(),
@@ -211,10 +213,10 @@ fn depth(side: &Side, share: f64) -> f64 {
 impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let recycling = if self.recycling { "on" } else { "off" };
-        let prepared = if self.hull_shape {
-            " (HullShape for isa-gjk)"
-        } else {
-            ""
+        let prepared = match (self.hull_shape, self.unchanged_shapes) {
+            (true, _) => " (HullShape for isa-gjk)",
+            (false, true) => " (unchanged in a step, as isa-gjk is told)",
+            (false, false) => "",
         };
         writeln!(
             f,

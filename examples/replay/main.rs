@@ -91,6 +91,7 @@ impl Options {
             seed: self.seed,
             recycling: true,
             hull_shape: false,
+            unchanged_shapes: false,
             can_sleep: true,
             hulls,
         }

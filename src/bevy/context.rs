@@ -198,7 +198,9 @@ impl PhysicsContext {
     /// Steps the world and returns what began and ceased to touch.
     pub(super) fn step(&mut self) -> Vec<CollisionEvent> {
         let recorder = CollisionRecorder::default();
-        self.world.step_with_events(&(), &recorder);
+        let world = &mut self.world;
+        self.dispatcher
+            .with_unchanged_shapes(|| world.step_with_events(&(), &recorder));
         let events = recorder.into_events().into_iter();
         let told = events
             .filter_map(|event| CollisionEvent::new(event, |collider| self.entity(collider)))

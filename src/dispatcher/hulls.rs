@@ -4,7 +4,8 @@
 //! is the one that was there before. So each use compares the polyhedron's points with those the
 //! hull was built from (a `memcmp`, some 10 ns for 100 vertices). Equal points have an equal
 //! hull, whatever the allocator or the user did in between; the table is a pure function of the
-//! shapes, and no answer depends on its history.
+//! shapes, and no answer depends on its history. Where the user promises that no shape changes for
+//! a while, the first use in that span compares for all of them.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -12,6 +13,7 @@ use std::hash::{BuildHasherDefault, Hasher};
 use glam::Vec3;
 use parry3d::shape::ConvexPolyhedron;
 
+use super::unchanged::Span;
 use crate::hull::Hull;
 
 /// Bytes of prepared hulls that are kept without asking whether they are still in use.
@@ -32,6 +34,8 @@ pub(super) struct HullTable {
     /// How often references have ended.
     sweeps: u64,
     clock: u64,
+    /// The span that is under way.
+    span: Option<Span>,
 }
 
 /// Where a polyhedron keeps its points.
@@ -44,6 +48,8 @@ struct Slot {
     /// The points it was built from, where they are not the hull's own.
     source: Option<Box<[Vec3]>>,
     last_use: u64,
+    /// In which it was proved last.
+    span: Option<Span>,
 }
 
 impl Slot {
@@ -58,6 +64,7 @@ impl Slot {
             hull,
             source: (!same).then(|| points.into()),
             last_use: 0,
+            span: None,
         }
     }
 
@@ -140,8 +147,15 @@ impl<'a> Find<'a> for LastProved<'a> {
 }
 
 impl HullTable {
-    /// Drops what seems unused, if the table has grown a lot. References end here.
-    pub fn make_room(&mut self) {
+    /// Before hulls are looked for, which are unchanged during `span`. References end here.
+    #[inline]
+    pub fn begin(&mut self, span: Option<Span>) {
+        self.span = span;
+        self.make_room();
+    }
+
+    /// Drops what seems unused, if the table has grown a lot.
+    fn make_room(&mut self) {
         if self.bytes <= self.sweep_at.max(KEEP_BYTES) {
             return;
         }
@@ -170,12 +184,19 @@ impl HullTable {
             self.entries.get(&address).copied()
         };
         let slot = match known {
-            Some(i) if self.slots[i].is_of(points) => i,
+            Some(i) if self.is_proved(i) || self.slots[i].is_of(points) => i,
             _ => self.insert(address, polyhedron, known),
         };
         *self.recent.class(address) = (address, slot);
         self.slots[slot].last_use = self.clock;
+        self.slots[slot].span = self.span;
         self.slots[slot].hull.is_some().then_some(HullRef(slot))
+    }
+
+    /// Whether it was proved in the span that is under way: the points at its address are the same.
+    #[inline]
+    fn is_proved(&self, slot: usize) -> bool {
+        self.span.is_some() && self.slots[slot].span == self.span
     }
 
     #[cold]

@@ -14,6 +14,7 @@ mod parts;
 mod points;
 mod scene;
 mod sub_pairs;
+mod unchanged;
 
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints, ShapeCastOptions};
@@ -29,6 +30,7 @@ use convex::UpdateManifold;
 use hulls::Find;
 use pair::Side;
 use parts::Mover;
+use unchanged::{Span, Unchanged};
 
 use crate::stats::{SharedStats, Stats};
 
@@ -40,12 +42,35 @@ use crate::stats::{SharedStats, Stats};
 #[derive(Clone, Default)]
 pub struct IsaGjkDispatcher {
     stats: SharedStats,
+    unchanged: Unchanged,
 }
 
 impl IsaGjkDispatcher {
     /// What the queries of this dispatcher and its clones have cost so far.
     pub fn stats(&self) -> Stats {
         self.stats.read()
+    }
+
+    /// Runs `step`, in which no collider's shape is changed, replaced or dropped: then a plain hull is
+    /// compared with the prepared one in its first pair only, not in each.
+    ///
+    /// A step of a world is such a thing. The promise is for all shapes that the contacts of this
+    /// dispatcher and its clones are asked about meanwhile, in any thread; where it does not hold,
+    /// contacts may be those of the shape before. `HullShape`s need no such promise.
+    ///
+    /// ```
+    /// use isa_gjk::IsaGjkDispatcher;
+    /// use rapier3d::prelude::*;
+    ///
+    /// let dispatcher = IsaGjkDispatcher::default();
+    /// let mut world = PhysicsWorld {
+    ///     narrow_phase: NarrowPhase::with_query_dispatcher(dispatcher.clone()),
+    ///     ..PhysicsWorld::default()
+    /// };
+    /// dispatcher.with_unchanged_shapes(|| world.step());
+    /// ```
+    pub fn with_unchanged_shapes<R>(&self, step: impl FnOnce() -> R) -> R {
+        self.unchanged.run(step)
     }
 }
 
@@ -165,12 +190,13 @@ where
             return Ok(());
         }
         composite::keep_one(manifolds, workspace);
-        self.contact_manifold_convex_convex(
+        let sides = (Side::alone(g1), Side::alone(g2));
+        let (constraints, span) = ([Constraints::None; 2], self.unchanged.span());
+        self.update_manifold(
             pos12,
-            g1,
-            g2,
-            None,
-            None,
+            sides,
+            span,
+            constraints,
             prediction,
             &mut manifolds[0],
         )
@@ -186,20 +212,22 @@ where
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported> {
-        let (side_1, side_2) = (Side::alone(g1), Side::alone(g2));
+        let sides = (Side::alone(g1), Side::alone(g2));
         let constraints = [normal_constraints1, normal_constraints2].map(Constraints::given);
-        self.update_manifold(pos12, side_1, side_2, constraints, prediction, manifold)
+        // Whoever takes shapes apart may make parts that do not outlive their pair.
+        let span = None;
+        self.update_manifold(pos12, sides, span, constraints, prediction, manifold)
     }
 }
 
 impl IsaGjkDispatcher {
-    /// Brings the manifold of two convex shapes up to date.
+    /// Brings the manifold of two convex shapes up to date, which are unchanged during `span`.
     #[inline]
     fn update_manifold<'a, 'b, M, C>(
         &self,
         pos12: &Pose,
-        side_1: Side<'a, impl Find<'a>>,
-        side_2: Side<'b, impl Find<'b>>,
+        (side_1, side_2): (Side<'a, impl Find<'a>>, Side<'b, impl Find<'b>>),
+        span: Option<Span>,
         constraints: [Constraints<'_>; 2],
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
@@ -216,7 +244,7 @@ impl IsaGjkDispatcher {
             manifold,
             stats: &self.stats,
         };
-        if pair::visit_sides(side_1, side_2, update).is_some() {
+        if pair::visit_sides(side_1, side_2, span, update).is_some() {
             return Ok(());
         }
         let [c1, c2] = constraints;

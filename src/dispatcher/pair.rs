@@ -7,6 +7,7 @@ use parry3d::math::{Pose, Real};
 use parry3d::shape::{Segment as ParrySegment, Shape, ShapeType, Triangle};
 
 use super::hulls::{EachProved, Find, HullRef, HullTable};
+use super::unchanged::Span;
 use crate::epa::{EpaScratch, Shells};
 use crate::hull::Hull;
 use crate::hull_shape::HullShape;
@@ -181,21 +182,22 @@ pub(super) fn visit<V: PairVisitor>(
     shape_2: &dyn Shape,
     visitor: V,
 ) -> Option<V::Answer> {
-    visit_sides(Side::alone(shape_1), Side::alone(shape_2), visitor)
+    visit_sides(Side::alone(shape_1), Side::alone(shape_2), None, visitor)
 }
 
-/// As [`visit`], for pairs of parts.
+/// As [`visit`], for shapes that are unchanged during `span`.
 #[inline]
 pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
     mut side_1: Side<'a, impl Find<'a>>,
     mut side_2: Side<'b, impl Find<'b>>,
+    span: Option<Span>,
     visitor: V,
 ) -> Option<V::Answer> {
     let (shape_1, shape_2) = (side_1.shape, side_2.shape);
     let [type_1, type_2] = [shape_1.shape_type(), shape_2.shape_type()];
     match [is_hull(shape_1, type_1), is_hull(shape_2, type_2)] {
         [true, true] => WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
-            hulls.make_room();
+            hulls.begin(span);
             let first = side_1.prepare(type_1, hulls)?;
             let second = side_2.prepare(type_2, hulls)?;
             let pair = Pair {
@@ -206,8 +208,8 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
             };
             visitor.visit(&pair, scratch)
         }),
-        [true, false] => Besides::new(side_1, type_1, false).visit(shape_2, type_2, visitor),
-        [false, true] => Besides::new(side_2, type_2, true).visit(shape_1, type_1, visitor),
+        [true, false] => Besides::new(side_1, type_1, span, false).visit(shape_2, type_2, visitor),
+        [false, true] => Besides::new(side_2, type_2, span, true).visit(shape_1, type_1, visitor),
         [false, false] => None,
     }
 }
@@ -216,15 +218,17 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
 struct Besides<'a, F> {
     side: Side<'a, F>,
     shape_type: ShapeType,
+    span: Option<Span>,
     swapped: bool,
 }
 
 impl<'a, F: Find<'a>> Besides<'a, F> {
     #[inline]
-    fn new(side: Side<'a, F>, shape_type: ShapeType, swapped: bool) -> Self {
+    fn new(side: Side<'a, F>, shape_type: ShapeType, span: Option<Span>, swapped: bool) -> Self {
         Self {
             side,
             shape_type,
+            span,
             swapped,
         }
     }
@@ -298,7 +302,7 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
         visit: impl FnOnce(&Pair<'_, B>, &mut Scratch) -> Option<T>,
     ) -> Option<T> {
         WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
-            hulls.make_room();
+            hulls.begin(self.span);
             let prepared = self.side.prepare(self.shape_type, hulls)?;
             let pair = Pair {
                 hull: prepared.hull(hulls)?,

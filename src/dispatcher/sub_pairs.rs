@@ -102,8 +102,8 @@ where
         // As parry's routines do: a pair that nobody supports has no contacts.
         let _ = self.dispatcher.update_manifold(
             pos12,
-            part_1.side(),
-            part_2.side(),
+            (part_1.side(), part_2.side()),
+            self.dispatcher.unchanged.span(),
             constraints,
             self.prediction,
             &mut self.manifolds[manifold],

@@ -221,6 +221,8 @@ pub struct SceneParams {
     pub recycling: bool,
     /// Whether worlds with our dispatcher hold [`isa_gjk::HullShape`]s instead of plain hulls.
     pub hull_shape: bool,
+    /// Whether our dispatcher is told that shapes do not change within a step.
+    pub unchanged_shapes: bool,
     /// Whether bodies may fall asleep. Those that do cost nothing, and figures of time would say
     /// so of both worlds.
     pub can_sleep: bool,
@@ -233,7 +235,7 @@ pub fn build(
     dispatcher: Option<IsaGjkDispatcher>,
 ) -> Result<World, String> {
     let hull_shape = params.hull_shape && dispatcher.is_some();
-    let mut world = World::new(dispatcher);
+    let mut world = World::new(dispatcher, params.unchanged_shapes);
     world.physics.integration_parameters.contact_recycling = params.recycling;
     build::fill(&mut world, scene, params, hull_shape)?;
     Ok(world)

@@ -10,13 +10,17 @@ const DRUM_SPEED: Real = 0.5;
 pub struct World {
     /// The sets and the pipeline, whose counters hold the times of the last step.
     pub physics: PhysicsWorld,
+    /// Told before each step that no shape changes in it.
+    told: Option<IsaGjkDispatcher>,
     drum: Option<RigidBodyHandle>,
     steps: u32,
 }
 
 impl World {
-    /// An empty world; `None` leaves rapier its own dispatcher.
-    pub fn new(dispatcher: Option<IsaGjkDispatcher>) -> Self {
+    /// An empty world; `None` leaves rapier its own dispatcher. Ours may be told that shapes are
+    /// unchanged during a step.
+    pub fn new(dispatcher: Option<IsaGjkDispatcher>, unchanged_shapes: bool) -> Self {
+        let told = dispatcher.clone().filter(|_| unchanged_shapes);
         let narrow_phase = dispatcher.map_or_else(NarrowPhase::new, |dispatcher| {
             NarrowPhase::with_query_dispatcher(dispatcher)
         });
@@ -25,6 +29,7 @@ impl World {
                 narrow_phase,
                 ..PhysicsWorld::default()
             },
+            told,
             drum: None,
             steps: 0,
         }
@@ -44,7 +49,10 @@ impl World {
             let angle = DRUM_SPEED * dt * self.steps as Real;
             self.physics.bodies[drum].set_next_kinematic_rotation(Rotation::from_rotation_z(angle));
         }
-        self.physics.step();
+        match &self.told {
+            Some(dispatcher) => dispatcher.with_unchanged_shapes(|| self.physics.step()),
+            None => self.physics.step(),
+        }
     }
 
     /// Kinetic energy of the dynamic bodies.
