@@ -25,6 +25,7 @@ fn params(hulls: HullSource, bodies: u32) -> SceneParams {
         seed: 1,
         recycling: true,
         hull_shape: false,
+        unchanged_shapes: false,
         can_sleep: true,
     }
 }
