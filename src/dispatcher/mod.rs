@@ -222,7 +222,8 @@ where
 
 impl IsaGjkDispatcher {
     /// Brings the manifold of two convex shapes up to date, which are unchanged during `span`.
-    #[inline]
+    // In a call the sides would go through memory, which pairs that are apart notice.
+    #[inline(always)]
     fn update_manifold<'a, 'b, M, C>(
         &self,
         pos12: &Pose,

@@ -21,7 +21,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::graph::EdgeGraph;
+use super::graph::{EdgeGraph, Star};
 use super::top::{Highest, LANES, coordinates};
 use crate::stats::Cost;
 use crate::support::VertexId;
@@ -57,7 +57,7 @@ pub(super) fn extreme_vertex(
         let ties = fall * fall <= tie * tie * dir.length_squared();
         // Together: ties are not predictable (along an edge's normal its ends tie), fragile
         // vertices are.
-        if ties & slope.graph.is_fragile(at)
+        if ties & slope.graph.star(at).is_fragile()
             && let Some(exit) = slope.leave_plateau(dir, at)
         {
             (at, value) = (exit, slope.height(dir, exit));
@@ -74,19 +74,39 @@ impl Slope<'_> {
         dir.dot(self.points[vertex as usize].as_dvec3())
     }
 
-    /// The best neighbour of a vertex, and its height. A row at a time, and selections instead of
+    /// The best neighbour of a vertex, and its height. Four at a time, and selections instead of
     /// branches: neither how many neighbours there are nor which of them is better is predictable.
     #[inline(always)]
     fn best_neighbor(&self, dir: DVec3, at: VertexId) -> (VertexId, f64) {
-        let rows = self.graph.rows(at);
+        let star = self.graph.star(at);
         let mut highest = Highest::new(dir);
-        for (number, row) in rows.iter().enumerate() {
-            let corners = row.to.map(|w| self.points[usize::from(w)]);
-            highest.look_at(number, coordinates(corners));
+        self.look_at(star, 0, &mut highest);
+        if star.is_crowded() {
+            highest = self.look_further(at, highest);
         }
         let top = highest.top();
-        let row = &rows[top.place / LANES];
-        (row.to[top.place % LANES].into(), top.height)
+        let best = self.graph.neighbor(at, top.place);
+        (best.unwrap_or(at), top.height)
+    }
+
+    #[inline(always)]
+    fn look_at(&self, star: &Star, number: usize, highest: &mut Highest) {
+        let to = star.to();
+        let (fours, _) = to.as_chunks::<LANES>();
+        for (i, four) in fours.iter().enumerate() {
+            let corners = four.map(|w| self.points[usize::from(w)]);
+            highest.look_at(number * fours.len() + i, coordinates(corners));
+        }
+    }
+
+    /// At the neighbours that are not in the star.
+    #[cold]
+    #[inline(never)]
+    fn look_further(&self, at: VertexId, mut highest: Highest) -> Highest {
+        for (number, star) in (1..).zip(self.graph.more(at)) {
+            self.look_at(star, number, &mut highest);
+        }
+        highest
     }
 
     /// A vertex above the plateau around `start`, or `None` if the plateau is the maximum.

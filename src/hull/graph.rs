@@ -1,92 +1,179 @@
-//! The edge graph of a triangulated hull: rows of neighbours, with the faces between them.
+//! The edge graph of a triangulated hull: the neighbours of each vertex, with the faces between them.
 
-use std::array;
+use std::{array, iter};
 
-use super::surface::{Surface, triangle};
-use super::top::LANES;
+use super::surface::{Side, Surface, triangle};
 use crate::support::VertexId;
 
-/// An edge is named by its lower vertex, above this many bits, and its place in that vertex's
-/// row. With at most 2^15 vertices the name has 30 bits, as parry's packed feature ids do.
+/// An edge is named by its lower vertex, above this many bits, and its place among that
+/// vertex's neighbours. With at most 2^15 vertices the name has 30 bits, as parry's packed feature ids do.
 const PLACE_BITS: u32 = 15;
 
-/// The neighbours of each vertex in rows.
+/// The neighbours of each vertex.
 #[derive(Clone, Debug)]
 pub(super) struct EdgeGraph {
-    /// Where the rows of each vertex begin, and with [`FRAGILE`] what sort of vertex it is; at the
-    /// end, where the last rows end.
-    first: Box<[u32]>,
-    rows: Box<[Row]>,
+    /// The first neighbours of each vertex, which of most vertices are all.
+    stars: Box<[Star]>,
+    /// Where in `more` the others are, by vertex.
+    crowded: Box<[Crowded]>,
+    more: Box<[Star]>,
 }
 
-/// A bit that no number of rows has: at this vertex a tie must be looked into.
-const FRAGILE: u32 = 1 << 31;
-
-/// Four neighbours of a vertex, clockwise seen from outside. The last row is filled up with the
-/// first neighbour, which comes after the last one.
+/// Neighbours of a vertex, clockwise seen from outside. It is filled up with the first one, which
+/// comes after the last one.
+///
+/// Each vertex has one, so that it is found without another look into memory; and by its alignment
+/// it is on one line of the cache.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
-    pub to: [u16; LANES],
+#[repr(align(32))]
+pub(super) struct Star {
+    /// Ids of vertices; the highest bits of the first two are marks.
+    to: [u16; STAR],
     /// The face left of the edge to each of them. Right of it is that left of the next one.
-    left: [u16; LANES],
+    left: [u16; STAR],
+}
+
+/// On a triangulated surface each vertex has six neighbours on the average.
+const STAR: usize = 8;
+
+#[derive(Clone, Copy, Debug)]
+struct Crowded {
+    vertex: u16,
+    first: u32,
+    end: u32,
+}
+
+/// A bit that no id of a vertex has.
+const MARK: u16 = 1 << 15;
+/// The neighbour whose mark says that at this vertex a tie must be looked into.
+const FRAGILE: usize = 0;
+/// The neighbour whose mark says that this vertex has more of them than one star holds.
+const CROWDED: usize = 1;
+
+impl Star {
+    /// From the sides that leave a vertex, of which the `first` is to fill up with.
+    fn new(sides: &[Side], first: &Side, face_of: &[u16]) -> Self {
+        let sides: [&Side; STAR] = array::from_fn(|i| sides.get(i).unwrap_or(first));
+        Self {
+            to: sides.map(|side| side.to),
+            left: sides.map(|side| face_of[triangle(side.half_edge)]),
+        }
+    }
+
+    /// The neighbours.
+    #[inline(always)]
+    pub fn to(&self) -> [u16; STAR] {
+        let mut to = self.to;
+        to[FRAGILE] &= !MARK;
+        to[CROWDED] &= !MARK;
+        to
+    }
+
+    /// Whether a climb must look into ties at this vertex.
+    #[inline(always)]
+    pub fn is_fragile(&self) -> bool {
+        self.to[FRAGILE] & MARK != 0
+    }
+
+    /// Whether the vertex has more neighbours than these.
+    #[inline(always)]
+    pub fn is_crowded(&self) -> bool {
+        self.to[CROWDED] & MARK != 0
+    }
 }
 
 impl EdgeGraph {
     /// From a surface whose triangles went to the faces `face_of`.
     pub fn new(surface: &Surface<'_>, face_of: &[u16]) -> Self {
-        let count = surface.vertex_count();
-        let mut first = Vec::with_capacity(count + 1);
-        let mut rows = Vec::with_capacity(2 * count);
-        first.push(0);
-        for v in 0..count as u32 {
-            let around = surface.leaving(v);
-            for chunk in around.chunks(LANES) {
-                let sides = array::from_fn(|i| chunk.get(i).unwrap_or(&around[0]));
-                rows.push(Row {
-                    to: sides.map(|side| side.to),
-                    left: sides.map(|side| face_of[triangle(side.half_edge)]),
-                });
+        let (mut crowded, mut more) = (Vec::new(), Vec::new());
+        let stars = (0..surface.vertex_count()).map(|v| {
+            let around = surface.leaving(v as u32);
+            let mut of_vertex = around
+                .chunks(STAR)
+                .map(|sides| Star::new(sides, &around[0], face_of));
+            let mut star = of_vertex.next().expect("a vertex has neighbours");
+            let first = more.len() as u32;
+            more.extend(of_vertex);
+            let end = more.len() as u32;
+            if end > first {
+                star.to[CROWDED] |= MARK;
+                let vertex = v as u16;
+                crowded.push(Crowded { vertex, first, end });
             }
-            first.push(rows.len() as u32);
-        }
+            star
+        });
         Self {
-            first: first.into(),
-            rows: rows.into(),
+            stars: stars.collect(),
+            crowded: crowded.into(),
+            more: more.into(),
         }
     }
 
     /// Marks the vertices at which a climb must look into ties.
     pub fn mark_fragile(&mut self, is_fragile: impl Fn(&Self, VertexId) -> bool) {
-        for v in 0..self.first.len() - 1 {
+        for v in 0..self.stars.len() {
             if is_fragile(self, v as VertexId) {
-                self.first[v] |= FRAGILE;
+                self.stars[v].to[FRAGILE] |= MARK;
             }
         }
     }
 
-    /// Whether a climb must look into ties at this vertex.
-    #[inline]
-    pub fn is_fragile(&self, vertex: VertexId) -> bool {
-        self.first[vertex as usize] & FRAGILE != 0
+    /// The first star of a vertex.
+    #[inline(always)]
+    pub fn star(&self, vertex: VertexId) -> &Star {
+        &self.stars[vertex as usize]
     }
 
-    /// The neighbours of a vertex, in fours; the first may be repeated.
-    #[inline]
-    pub fn rows(&self, vertex: VertexId) -> &[Row] {
-        let v = vertex as usize;
-        &self.rows[row(self.first[v])..row(self.first[v + 1])]
+    /// The others.
+    #[cold]
+    pub fn more(&self, vertex: VertexId) -> &[Star] {
+        let vertex_of = |crowded: &Crowded| VertexId::from(crowded.vertex);
+        let found = self.crowded.binary_search_by_key(&vertex, vertex_of);
+        found.map_or(&[], |i| {
+            let Crowded { first, end, .. } = self.crowded[i];
+            &self.more[first as usize..end as usize]
+        })
+    }
+
+    #[inline(always)]
+    fn stars(&self, vertex: VertexId) -> impl Iterator<Item = &Star> + Clone {
+        let star = self.star(vertex);
+        let more = if star.is_crowded() {
+            self.more(vertex)
+        } else {
+            &[]
+        };
+        iter::once(star).chain(more)
+    }
+
+    /// The star with this place, and the place in it; there may be neither vertex nor place.
+    #[inline(always)]
+    fn find(&self, vertex: VertexId, place: usize) -> Option<(&Star, usize)> {
+        let star = self.stars.get(vertex as usize)?;
+        if place < STAR {
+            return Some((star, place));
+        }
+        let more = self.more(vertex).get(place / STAR - 1)?;
+        Some((more, place % STAR))
+    }
+
+    /// The neighbour in a place.
+    #[inline(always)]
+    pub fn neighbor(&self, vertex: VertexId, place: usize) -> Option<VertexId> {
+        let (star, place) = self.find(vertex, place)?;
+        Some((star.to[place] & !MARK).into())
     }
 
     /// The neighbours of a vertex; the first may be repeated.
     #[inline]
     pub fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = u16> {
-        self.rows(vertex).iter().flat_map(|row| row.to)
+        self.stars(vertex).flat_map(Star::to)
     }
 
-    /// The faces around a vertex, in fours, some of them more than once.
+    /// The faces around a vertex, some of them more than once.
     #[inline]
-    pub fn faces_at(&self, vertex: VertexId) -> impl Iterator<Item = [u16; LANES]> + Clone {
-        self.rows(vertex).iter().map(|row| row.left)
+    pub fn faces_at(&self, vertex: VertexId) -> impl Iterator<Item = [u16; STAR]> + Clone {
+        self.stars(vertex).map(|star| star.left)
     }
 
     /// The name of an edge, the same for both directions.
@@ -94,61 +181,40 @@ impl EdgeGraph {
         Some(edge_at(from.min(to), self.edge_place(from, to)?))
     }
 
-    /// What the name of an edge has beside its lower vertex: its place there. All are looked at:
-    /// where a search would end is not predictable.
+    /// What the name of an edge has beside its lower vertex: its first place there. All are looked
+    /// at: where a search would end is not predictable.
     #[inline]
     pub fn edge_place(&self, from: VertexId, to: VertexId) -> Option<u16> {
+        const NONE: usize = usize::MAX;
         let (low, high) = (from.min(to), from.max(to));
-        let rows = self.rows(low);
-        let none = rows.len() * LANES;
-        let mut place = none;
-        for (r, row) in rows.iter().enumerate().rev() {
-            for (lane, &w) in row.to.iter().enumerate().rev() {
-                let here = r * LANES + lane;
-                place = if VertexId::from(w) == high {
-                    here
-                } else {
-                    place
-                };
+        let mut place = NONE;
+        for (s, star) in self.stars(low).enumerate() {
+            for (i, w) in star.to().into_iter().enumerate() {
+                let is_first = (VertexId::from(w) == high) & (place == NONE);
+                place = if is_first { s * STAR + i } else { place };
             }
         }
-        (place < none).then_some(place as u16)
+        (place != NONE).then_some(place as u16)
     }
 
     /// The end vertices of an edge.
     #[inline]
     pub fn edge(&self, id: u32) -> Option<[VertexId; 2]> {
         let (from, place) = split(id);
-        let row = self.rows_of(from)?.get(place / LANES)?;
-        Some([from, row.to[place % LANES].into()])
+        Some([from, self.neighbor(from, place)?])
     }
 
     /// The faces on both sides of an edge.
     #[inline]
     pub fn faces_beside(&self, id: u32) -> Option<[u16; 2]> {
         let (from, place) = split(id);
-        let rows = self.rows_of(from)?;
-        let left = |place: usize| rows.get(place / LANES).map(|row| row.left[place % LANES]);
+        let left = |place| self.find(from, place).map(|(star, place)| star.left[place]);
         Some([left(place)?, left(place + 1).or_else(|| left(0))?])
     }
 
-    /// As [`rows`](Self::rows), of a vertex that there may not be.
-    #[inline]
-    fn rows_of(&self, vertex: VertexId) -> Option<&[Row]> {
-        let v = vertex as usize;
-        let (start, end) = (*self.first.get(v)?, *self.first.get(v + 1)?);
-        self.rows.get(row(start)..row(end))
-    }
-
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.first) + size_of_val(&*self.rows)
+        size_of_val(&*self.stars) + size_of_val(&*self.crowded) + size_of_val(&*self.more)
     }
-}
-
-/// The number of a row, whatever is marked with it.
-#[inline]
-fn row(marked: u32) -> usize {
-    (marked & !FRAGILE) as usize
 }
 
 /// The lower vertex of an edge, and its place there.
