@@ -34,7 +34,7 @@
 //! - Rounded borders are for plain hulls: use `SharedShape::round_convex_hull`.
 //!
 //! # Memory
-//! The polyhedron costs about 250 bytes per vertex and the prepared hull about 160
+//! The polyhedron costs about 250 bytes per vertex and the prepared hull about 130
 //! ([`Hull::heap_bytes`]). A plain collider costs the same where our dispatcher answers, and the
 //! latter once per thread.
 

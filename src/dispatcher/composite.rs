@@ -131,7 +131,6 @@ where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
 {
-    let is_hull = |shape: &dyn Shape| pair::is_hull(shape, shape.shape_type());
     if let [Some(c1), Some(c2)] = [s1.as_compound(), s2.as_compound()] {
         let ours = compound::has_hull(c1) || compound::has_hull(c2);
         if ours {
@@ -142,7 +141,8 @@ where
     }
     for (first, second, swapped) in [(s1, s2, false), (s2, s1, true)] {
         if let Some(compound) = first.as_compound() {
-            let ours = second.is_convex() && (is_hull(second) || compound::has_hull(compound));
+            let ours =
+                second.is_convex() && (pair::is_hull(second) || compound::has_hull(compound));
             if ours {
                 let update = Update::begin(dispatcher, prediction, manifolds, workspace);
                 compound::compound_and_convex(update, pos12, compound, second, swapped);
@@ -150,7 +150,7 @@ where
             return ours;
         }
         if let Some(triangles) = Triangles::of(first)
-            && is_hull(second)
+            && pair::is_hull(second)
         {
             let update = Update::begin(dispatcher, prediction, manifolds, workspace);
             mesh::triangles_and_hull(update, pos12, triangles, second, swapped);

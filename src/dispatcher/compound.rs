@@ -20,7 +20,7 @@ const PROOFS: usize = 8;
 /// Whether a part of the compound is a hull.
 pub(super) fn has_hull(compound: &Compound) -> bool {
     let mut parts = compound.shapes().iter();
-    parts.any(|(_, shape)| pair::is_hull(&**shape, shape.shape_type()))
+    parts.any(|(_, shape)| pair::is_hull(&**shape))
 }
 
 /// Two compounds.

@@ -182,15 +182,14 @@ where
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
-        let shapes = [g1, g2];
+        let (shapes, sides) = ([g1, g2], (Side::alone(g1), Side::alone(g2)));
         // Two hulls, the pairs that matter most, need not be asked whether they have parts.
-        if !pair::are_hulls(g1, g2)
+        if !(sides.0.is_hull() && sides.1.is_hull())
             && composite::contact_manifolds(self, pos12, shapes, prediction, manifolds, workspace)
         {
             return Ok(());
         }
         composite::keep_one(manifolds, workspace);
-        let sides = (Side::alone(g1), Side::alone(g2));
         let (constraints, span) = ([Constraints::None; 2], self.unchanged.span());
         self.update_manifold(
             pos12,

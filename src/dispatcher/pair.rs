@@ -4,7 +4,9 @@ use std::cell::RefCell;
 
 use glam::DVec3;
 use parry3d::math::{Pose, Real};
-use parry3d::shape::{Segment as ParrySegment, Shape, ShapeType, Triangle};
+use parry3d::shape::{
+    ConvexPolyhedron, Segment as ParrySegment, Shape, ShapeType, Triangle, TypedShape,
+};
 
 use super::hulls::{EachProved, Find, HullRef, HullTable};
 use super::unchanged::Span;
@@ -123,55 +125,76 @@ pub(super) trait PairVisitor: Sized {
     }
 }
 
-/// Whether a shape is a hull to us, so that pairs with it are ours to answer.
-pub(super) fn is_hull(shape: &dyn Shape, shape_type: ShapeType) -> bool {
-    match shape_type {
-        ShapeType::ConvexPolyhedron | ShapeType::RoundConvexPolyhedron => true,
-        ShapeType::Custom => shape.as_shape::<HullShape>().is_some(),
-        _ => false,
+/// A hull among parry's shapes.
+#[derive(Clone, Copy)]
+enum AnyHull<'a> {
+    /// With a rounded border of this radius.
+    Plain(&'a ConvexPolyhedron, Real),
+    Prepared(&'a HullShape),
+}
+
+impl<'a> AnyHull<'a> {
+    #[inline]
+    fn of(shape: &'a dyn Shape) -> Option<Self> {
+        // The typed shape of a `HullShape` is a plain one.
+        if shape.shape_type() == ShapeType::Custom {
+            return shape.as_shape().map(Self::Prepared);
+        }
+        match shape.as_typed_shape() {
+            TypedShape::ConvexPolyhedron(hull) => Some(Self::Plain(hull, 0.0)),
+            TypedShape::RoundConvexPolyhedron(round) => {
+                Some(Self::Plain(&round.inner_shape, round.border_radius))
+            }
+            _ => None,
+        }
     }
 }
 
-/// Whether both shapes are hulls.
-pub(super) fn are_hulls(shape_1: &dyn Shape, shape_2: &dyn Shape) -> bool {
-    [shape_1, shape_2]
-        .into_iter()
-        .all(|shape| is_hull(shape, shape.shape_type()))
+/// Whether a shape is a hull to us, so that pairs with it are ours to answer.
+pub(super) fn is_hull(shape: &dyn Shape) -> bool {
+    AnyHull::of(shape).is_some()
 }
 
 /// A shape of a pair, and how to find its hull.
 pub(super) struct Side<'a, F> {
     pub shape: &'a dyn Shape,
-    pub find: F,
+    hull: Option<AnyHull<'a>>,
+    find: F,
 }
 
 impl<'a> Side<'a, EachProved> {
     /// A shape of which nothing is known.
     #[inline]
     pub fn alone(shape: &'a dyn Shape) -> Self {
-        let find = EachProved;
-        Self { shape, find }
+        Self::new(shape, EachProved)
     }
 }
 
 impl<'a, F: Find<'a>> Side<'a, F> {
+    #[inline]
+    pub fn new(shape: &'a dyn Shape, find: F) -> Self {
+        let hull = AnyHull::of(shape);
+        Self { shape, hull, find }
+    }
+
+    #[inline]
+    pub fn is_hull(&self) -> bool {
+        self.hull.is_some()
+    }
+
     /// The hull, if the shape is one.
     #[inline(always)]
-    fn prepare(&mut self, shape_type: ShapeType, table: &mut HullTable) -> Option<Prepared<'a>> {
-        let (place, border) = match shape_type {
-            ShapeType::ConvexPolyhedron => {
-                let polyhedron = self.shape.as_convex_polyhedron()?;
-                (Place::Found(self.find.find(table, polyhedron)?), 0.0)
-            }
-            ShapeType::RoundConvexPolyhedron => {
-                let round = self.shape.as_round_convex_polyhedron()?;
-                let place = self.find.find(table, &round.inner_shape)?;
-                (Place::Found(place), round.border_radius.into())
-            }
-            ShapeType::Custom => (Place::Own(self.shape.as_shape::<HullShape>()?.hull()), 0.0),
-            _ => return None,
-        };
-        Some(Prepared { place, border })
+    fn prepare(&mut self, table: &mut HullTable) -> Option<Prepared<'a>> {
+        Some(match self.hull? {
+            AnyHull::Plain(polyhedron, border) => Prepared {
+                place: Place::Found(self.find.find(table, polyhedron)?),
+                border: border.into(),
+            },
+            AnyHull::Prepared(shape) => Prepared {
+                place: Place::Own(shape.hull()),
+                border: 0.0,
+            },
+        })
     }
 }
 
@@ -193,13 +216,11 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
     span: Option<Span>,
     visitor: V,
 ) -> Option<V::Answer> {
-    let (shape_1, shape_2) = (side_1.shape, side_2.shape);
-    let [type_1, type_2] = [shape_1.shape_type(), shape_2.shape_type()];
-    match [is_hull(shape_1, type_1), is_hull(shape_2, type_2)] {
+    match [side_1.is_hull(), side_2.is_hull()] {
         [true, true] => WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
             hulls.begin(span);
-            let first = side_1.prepare(type_1, hulls)?;
-            let second = side_2.prepare(type_2, hulls)?;
+            let first = side_1.prepare(hulls)?;
+            let second = side_2.prepare(hulls)?;
             let pair = Pair {
                 hull: first.hull(hulls)?,
                 other: second.hull(hulls)?,
@@ -208,8 +229,8 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
             };
             visitor.visit(&pair, scratch)
         }),
-        [true, false] => Besides::new(side_1, type_1, span, false).visit(shape_2, type_2, visitor),
-        [false, true] => Besides::new(side_2, type_2, span, true).visit(shape_1, type_1, visitor),
+        [true, false] => Besides::new(side_1, span, false).visit(side_2.shape, visitor),
+        [false, true] => Besides::new(side_2, span, true).visit(side_1.shape, visitor),
         [false, false] => None,
     }
 }
@@ -217,30 +238,23 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
 /// A hull, and where in its pair it is. It is not looked up before the other shape is known.
 struct Besides<'a, F> {
     side: Side<'a, F>,
-    shape_type: ShapeType,
     span: Option<Span>,
     swapped: bool,
 }
 
 impl<'a, F: Find<'a>> Besides<'a, F> {
     #[inline]
-    fn new(side: Side<'a, F>, shape_type: ShapeType, span: Option<Span>, swapped: bool) -> Self {
+    fn new(side: Side<'a, F>, span: Option<Span>, swapped: bool) -> Self {
         Self {
             side,
-            shape_type,
             span,
             swapped,
         }
     }
 
     /// Visits the hull and another shape; `None` if that is not known, or too flat or too small.
-    fn visit<V: PairVisitor>(
-        self,
-        other: &dyn Shape,
-        shape_type: ShapeType,
-        visitor: V,
-    ) -> Option<V::Answer> {
-        match shape_type {
+    fn visit<V: PairVisitor>(self, other: &dyn Shape, visitor: V) -> Option<V::Answer> {
+        match other.shape_type() {
             ShapeType::Cuboid => {
                 let cuboid = cuboid(other.as_cuboid()?.half_extents.as_dvec3())?;
                 self.polytope(&cuboid, 0.0, visitor)
@@ -303,7 +317,7 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
     ) -> Option<T> {
         WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
             hulls.begin(self.span);
-            let prepared = self.side.prepare(self.shape_type, hulls)?;
+            let prepared = self.side.prepare(hulls)?;
             let pair = Pair {
                 hull: prepared.hull(hulls)?,
                 other,

@@ -37,10 +37,7 @@ impl<'a> Part<'a> {
     }
 
     fn side(&mut self) -> Side<'a, &mut LastProved<'a>> {
-        Side {
-            shape: self.shape,
-            find: &mut self.proved,
-        }
+        Side::new(self.shape, &mut self.proved)
     }
 }
 
