@@ -12,7 +12,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use hull::hull;
-use isa_gjk::IsaGjkDispatcher;
+use isa_gjk::{HullShape, IsaGjkDispatcher};
 use oorandom::Rand32;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{
@@ -35,21 +35,34 @@ fn main() {
 
 /// One pair that moves by 2 mm and turns by 0.5° from update to update.
 fn warm_manifolds() {
-    println!("### Warm manifold updates: ns, default → ours, ratio\n");
-    println!("| vertices | separated | touching | shallow | deep |\n|---|---|---|---|---|");
-    for vertices in VERTICES {
-        let shapes = [hull(vertices, 1), hull(vertices, 2)];
-        let row = GAPS.map(|(_, gap)| {
-            let poses = trajectory(&shapes, gap, 1.0);
-            let ours = IsaGjkDispatcher::default();
-            in_turn(
-                FRAMES,
-                || update_along(&DefaultQueryDispatcher, &shapes, &poses),
-                || update_along(&ours, &shapes, &poses),
-            )
-        });
-        println!("| {vertices} | {} |", row.join(" | "));
+    let plain = |shape: &SharedShape| shape.clone();
+    for (what, given) in [("plain hulls", plain as Given), ("`HullShape`s", prepared)] {
+        println!("### Warm manifold updates, to ours {what}: ns, default → ours, ratio\n");
+        println!("| vertices | separated | touching | shallow | deep |\n|---|---|---|---|---|");
+        for vertices in VERTICES {
+            let shapes = [hull(vertices, 1), hull(vertices, 2)];
+            let our_shapes = shapes.each_ref().map(given);
+            let row = GAPS.map(|(_, gap)| {
+                let poses = trajectory(&shapes, gap, 1.0);
+                let ours = IsaGjkDispatcher::default();
+                in_turn(
+                    FRAMES,
+                    || update_along(&DefaultQueryDispatcher, &shapes, &poses),
+                    || update_along(&ours, &our_shapes, &poses),
+                )
+            });
+            println!("| {vertices} | {} |", row.join(" | "));
+        }
+        println!();
     }
+}
+
+/// The shape that our dispatcher is given for a plain hull.
+type Given = fn(&SharedShape) -> SharedShape;
+
+fn prepared(hull: &SharedShape) -> SharedShape {
+    let polyhedron = hull.as_convex_polyhedron().expect("a hull").clone();
+    SharedShape::new(HullShape::try_from(polyhedron).expect("a solid"))
 }
 
 fn update_along(
