@@ -21,7 +21,7 @@
 //!   the place of `HullShape`s and works without this crate. With our dispatcher it goes on as
 //!   before, but for the rounding of bounding boxes and for pairs that parry answers (with
 //!   cylinders and cones), whose contact points may differ as said above.
-//!   To get `HullShape`s back, see [`TryFrom`].
+//!   To get `HullShape`s back, see [`PreparedShapes`].
 //! - **Debug rendering** draws the polyhedron's edges, for the same reason.
 //! - **Continuous collision detection** sweeps the polyhedron's points, as it does those of a
 //!   plain hull, with a scan of all points per support query: that is rapier's code.
@@ -41,8 +41,11 @@
 mod bounds;
 mod features;
 mod points;
+mod prepared;
 mod rays;
 mod shape;
+
+pub use prepared::PreparedShapes;
 
 use std::sync::Arc;
 

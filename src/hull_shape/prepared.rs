@@ -1,0 +1,85 @@
+//! Preparing the hulls of a whole world.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use parry3d::shape::{Compound, CompoundFlags, SharedShape};
+
+use super::HullShape;
+
+/// Puts [`HullShape`]s in the place of plain hulls, also of those that are parts of compounds, for
+/// worlds that were loaded or that others have built. Colliders that share a shape share the new
+/// one, too.
+///
+/// ```
+/// use isa_gjk::HullShape;
+/// use isa_gjk::hull_shape::PreparedShapes;
+/// use rapier3d::prelude::*;
+///
+/// # let corners = [Vector::ZERO, Vector::X, Vector::Y, Vector::Z];
+/// # let hull = SharedShape::convex_hull(&corners).unwrap();
+/// # let mut world = PhysicsWorld::default();
+/// # for _ in 0..2 {
+/// #     world.insert(RigidBodyBuilder::dynamic(), ColliderBuilder::new(hull.clone()));
+/// # }
+/// let mut prepared = PreparedShapes::default();
+/// for (_, collider) in world.colliders.iter_mut() {
+///     let shape = prepared.prepare(collider.shared_shape());
+///     collider.set_shape(shape);
+/// }
+/// # for (_, collider) in world.colliders.iter() {
+/// #     assert!(collider.shape().as_shape::<HullShape>().is_some());
+/// # }
+/// ```
+#[derive(Default)]
+pub struct PreparedShapes {
+    /// By the address of what was prepared.
+    known: HashMap<usize, Known>,
+}
+
+struct Known {
+    prepared: SharedShape,
+    /// Kept so that no other shape comes to its address.
+    _original: SharedShape,
+}
+
+impl PreparedShapes {
+    /// The shape with its plain hulls prepared, or the shape itself if none of them can be. Round
+    /// hulls stay as they are, and compounds with [`CompoundFlags::FIX_INTERNAL_EDGES`], of which
+    /// parry could not smooth prepared parts. ([`HullShape::try_from`] tells what is wrong with a
+    /// hull.)
+    pub fn prepare(&mut self, shape: &SharedShape) -> SharedShape {
+        let address = Arc::as_ptr(&shape.0).addr();
+        if let Some(known) = self.known.get(&address) {
+            return known.prepared.clone();
+        }
+        let prepared = self.replacement(shape).unwrap_or_else(|| shape.clone());
+        let known = Known {
+            prepared: prepared.clone(),
+            _original: shape.clone(),
+        };
+        self.known.insert(address, known);
+        prepared
+    }
+
+    fn replacement(&mut self, shape: &SharedShape) -> Option<SharedShape> {
+        if let Some(polyhedron) = shape.as_convex_polyhedron() {
+            let hull = HullShape::try_from(polyhedron.clone()).ok()?;
+            return Some(SharedShape::new(hull));
+        }
+        let compound = shape.as_compound()?;
+        if compound.flags().contains(CompoundFlags::FIX_INTERNAL_EDGES) {
+            return None;
+        }
+        let parts = compound.shapes();
+        let prepared: Vec<_> = parts
+            .iter()
+            .map(|(pose, part)| (*pose, self.prepare(part)))
+            .collect();
+        let is_new = parts
+            .iter()
+            .zip(&prepared)
+            .any(|((_, old), (_, new))| !Arc::ptr_eq(&old.0, &new.0));
+        is_new.then(|| SharedShape::new(Compound::new(prepared)))
+    }
+}
