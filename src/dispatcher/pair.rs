@@ -138,7 +138,7 @@ impl<'a> AnyHull<'a> {
     fn of(shape: &'a dyn Shape) -> Option<Self> {
         // The typed shape of a `HullShape` is a plain one.
         if shape.shape_type() == ShapeType::Custom {
-            return shape.as_shape().map(Self::Prepared);
+            return shape.as_shape::<HullShape>().map(Self::Prepared);
         }
         match shape.as_typed_shape() {
             TypedShape::ConvexPolyhedron(hull) => Some(Self::Plain(hull, 0.0)),

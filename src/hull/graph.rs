@@ -1,12 +1,12 @@
-//! The edge graph of a triangulated hull: the neighbours of each vertex, with the faces between them.
+//! The edge graph of a triangulated hull: the neighbours of each vertex, and the faces between them.
 
 use std::{array, iter};
 
 use super::surface::{Side, Surface, triangle};
 use crate::support::VertexId;
 
-/// An edge is named by its lower vertex, above this many bits, and its place among that
-/// vertex's neighbours. With at most 2^15 vertices the name has 30 bits, as parry's packed feature ids do.
+/// An edge is named by its lower vertex, above this many bits, and its place among that vertex's
+/// neighbours. With at most 2^15 vertices the name has 30 bits, as parry's packed feature ids do.
 const PLACE_BITS: u32 = 15;
 
 /// The neighbours of each vertex.
