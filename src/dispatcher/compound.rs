@@ -11,7 +11,7 @@ use parry3d::shape::{Compound, Shape};
 
 use super::constraints::Constraints;
 use super::hulls::LastProved;
-use super::pair;
+use super::pair::{self, Side};
 use super::sub_pairs::{Part, Update};
 
 /// Of a compound with more parts than this, some prove their hulls more than once.
@@ -36,7 +36,7 @@ where
         .transform_by(pos12)
         .loosened(update.prediction);
     for i in c1.bvh().intersect_aabb(&whole_2) {
-        let mut part_1 = part(c1, i);
+        let mut part_1 = part(c1, i, LastProved::default());
         let near_1 = c1.aabbs()[i as usize].loosened(update.prediction);
         let pos_part1_2 = c1.shapes()[i as usize].0.inv_mul(pos12);
         for k in c2.bvh().intersect_aabb(&near_1.transform_by(&pos21)) {
@@ -44,12 +44,11 @@ where
             if !box_in(c2, k, pos12).intersects(&near_1) {
                 continue;
             }
-            let mut part_2 = part(c2, k);
             let proved = &mut proved_2[k as usize % PROOFS];
-            part_2.proved = *proved;
+            let mut part_2 = part(c2, k, *proved);
             let pos12 = pos_part1_2 * c2.shapes()[k as usize].0;
             update.parts(&pos12, &mut part_1, &mut part_2);
-            *proved = part_2.proved;
+            *proved = part_2.side.find;
         }
     }
     update.end();
@@ -70,7 +69,7 @@ pub(super) fn compound_and_convex<M, C>(
     let whole = convex.compute_aabb(&place).loosened(update.prediction);
     let mut whole_part = Part::whole(convex);
     for i in compound.bvh().intersect_aabb(&whole) {
-        let mut part = part(compound, i);
+        let mut part = part(compound, i, LastProved::default());
         let pos = &compound.shapes()[i as usize].0;
         if swapped {
             update.parts(&(pos12 * pos), &mut whole_part, &mut part);
@@ -85,14 +84,13 @@ fn box_in(compound: &Compound, part: u32, pose: &Pose) -> Aabb {
     compound.aabbs()[part as usize].transform_by(pose)
 }
 
-fn part(compound: &Compound, id: u32) -> Part<'_> {
+fn part<'a>(compound: &'a Compound, id: u32, proved: LastProved<'a>) -> Part<'a> {
     let (pos, shape) = &compound.shapes()[id as usize];
     let constraints = compound.part_normal_constraints(id);
     Part {
         id,
-        shape: &**shape,
+        side: Side::new(&**shape, proved),
         pos: Some(*pos),
         constraints: Constraints::given(constraints.map(|n| n as &dyn NormalConstraints)),
-        proved: LastProved::default(),
     }
 }

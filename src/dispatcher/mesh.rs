@@ -11,6 +11,7 @@ use parry3d::shape::{HeightField, Shape, TriMesh, Triangle, TrianglePseudoNormal
 
 use super::constraints::Constraints;
 use super::hulls::LastProved;
+use super::pair::Side;
 use super::sub_pairs::{Part, Update};
 
 /// A shape made of triangles.
@@ -64,10 +65,9 @@ pub(super) fn triangles_and_hull<M, C>(
         let normals = || triangles.normals(id);
         let mut part = Part {
             id,
-            shape: triangle,
+            side: Side::new(triangle, LastProved::default()),
             pos: None,
             constraints: Constraints::OfTriangle(&normals),
-            proved: LastProved::default(),
         };
         if swapped {
             update.parts(pos12, &mut hull, &mut part);

@@ -159,7 +159,7 @@ pub(super) fn is_hull(shape: &dyn Shape) -> bool {
 pub(super) struct Side<'a, F> {
     pub shape: &'a dyn Shape,
     hull: Option<AnyHull<'a>>,
-    find: F,
+    pub find: F,
 }
 
 impl<'a> Side<'a, EachProved> {
@@ -180,6 +180,16 @@ impl<'a, F: Find<'a>> Side<'a, F> {
     #[inline]
     pub fn is_hull(&self) -> bool {
         self.hull.is_some()
+    }
+
+    /// The same once more.
+    #[inline]
+    pub fn again(&mut self) -> Side<'a, &mut F> {
+        Side {
+            shape: self.shape,
+            hull: self.hull,
+            find: &mut self.find,
+        }
     }
 
     /// The hull, if the shape is one.

@@ -18,26 +18,20 @@ use super::{IsaGjkDispatcher, composite};
 pub(super) struct Part<'a> {
     /// Its number; 0 for a whole.
     pub id: u32,
-    pub shape: &'a dyn Shape,
+    pub side: Side<'a, LastProved<'a>>,
     /// Where it is in the compound.
     pub pos: Option<Pose>,
     pub constraints: Constraints<'a>,
-    pub proved: LastProved<'a>,
 }
 
 impl<'a> Part<'a> {
     pub fn whole(shape: &'a dyn Shape) -> Self {
         Self {
             id: 0,
-            shape,
+            side: Side::new(shape, LastProved::default()),
             pos: None,
             constraints: Constraints::None,
-            proved: LastProved::default(),
         }
-    }
-
-    fn side(&mut self) -> Side<'a, &mut LastProved<'a>> {
-        Side::new(self.shape, &mut self.proved)
     }
 }
 
@@ -99,7 +93,7 @@ where
         // As parry's routines do: a pair that nobody supports has no contacts.
         let _ = self.dispatcher.update_manifold(
             pos12,
-            (part_1.side(), part_2.side()),
+            (part_1.side.again(), part_2.side.again()),
             self.dispatcher.unchanged.span(),
             constraints,
             self.prediction,
