@@ -12,7 +12,8 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use hull::hull;
-use isa_gjk::{HullShape, IsaGjkDispatcher};
+use isa_gjk::IsaGjkDispatcher;
+use isa_gjk::hull_shape::PreparedShapes;
 use oorandom::Rand32;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{
@@ -36,6 +37,7 @@ fn main() {
 /// One pair that moves by 2 mm and turns by 0.5° from update to update.
 fn warm_manifolds() {
     let plain = |shape: &SharedShape| shape.clone();
+    let prepared = |shape: &SharedShape| PreparedShapes::default().prepare(shape);
     for (what, given) in [("plain hulls", plain as Given), ("`HullShape`s", prepared)] {
         println!("### Warm manifold updates, to ours {what}: ns, default → ours, ratio\n");
         println!("| vertices | separated | touching | shallow | deep |\n|---|---|---|---|---|");
@@ -59,11 +61,6 @@ fn warm_manifolds() {
 
 /// The shape that our dispatcher is given for a plain hull.
 type Given = fn(&SharedShape) -> SharedShape;
-
-fn prepared(hull: &SharedShape) -> SharedShape {
-    let polyhedron = hull.as_convex_polyhedron().expect("a hull").clone();
-    SharedShape::new(HullShape::try_from(polyhedron).expect("a solid"))
-}
 
 fn update_along(
     dispatcher: &impl PersistentQueryDispatcher,

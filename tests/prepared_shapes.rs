@@ -107,22 +107,24 @@ fn what_cannot_be_prepared_is_left_alone() {
     let ball = SharedShape::ball(0.5);
     let corners = [Vector::ZERO, Vector::X, Vector::Y, Vector::Z];
     let round = SharedShape::round_convex_hull(&corners, 0.1).expect("a solid");
-    let flat = [[0, 1, 2], [0, 2, 1]];
-    let flat = ConvexPolyhedron::from_convex_mesh(corners[..3].to_vec(), &flat);
+    let thin = corners.map(|corner| corner * Vector::new(1.0, 1.0, 1e-8));
+    let triangles = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]];
+    let thin = ConvexPolyhedron::from_convex_mesh(thin.to_vec(), &triangles);
     let edges = CompoundFlags::FIX_INTERNAL_EDGES;
     let smoothed = Compound::with_flags(vec![(aside(0.0), hull.clone())], edges, None);
-    let mut untouched = vec![
+    let untouched = [
         SharedShape::compound(vec![(aside(0.0), ball.clone())]),
         SharedShape::new(smoothed),
         ball,
         round,
+        SharedShape::new(thin.expect("parry takes it")),
     ];
-    untouched.extend(flat.map(SharedShape::new));
     let mut shapes = PreparedShapes::default();
     for shape in untouched {
         let what = shape.shape_type();
         assert!(same(&shape, &shapes.prepare(&shape)), "{what:?}");
     }
+    assert_eq!(shapes.refused().len(), 1, "the thin hull");
 }
 
 /// A running world is prepared: no contact is lost, nothing is thrown.

@@ -8,10 +8,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread;
 
 use common::generate::Dice;
-use common::world::{Ground, mixed};
+use common::memory::cold_manifold;
+use common::world::{Ground, mixed, state};
 use isa_gjk::IsaGjkDispatcher;
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
-use parry3d::shape::ConvexPolyhedron;
 use rapier3d::prelude::*;
 
 /// Compounds, meshes and single hulls.
@@ -27,8 +26,8 @@ fn worlds_go_the_same_way() {
             let [alone, promised] = &mut worlds;
             alone.step();
             dispatchers[1].with_unchanged_shapes(|| promised.step());
-            let [a, b] = worlds.each_ref().map(poses);
-            assert!(a == b, "other poses after {step} steps on {ground:?}");
+            let [a, b] = worlds.each_ref().map(state);
+            assert!(a == b, "another state after {step} steps on {ground:?}");
         }
         let [a, b] = dispatchers.map(|dispatcher| dispatcher.stats().queries());
         assert_eq!(a, b, "other queries on {ground:?}");
@@ -36,30 +35,25 @@ fn worlds_go_the_same_way() {
     }
 }
 
-fn poses(world: &PhysicsWorld) -> Vec<Pose> {
-    let bodies = world.bodies.iter();
-    bodies.map(|(_, body)| *body.position()).collect()
-}
-
 /// A pair whose first shape changes in place, and with it what is remembered of it.
 struct Changing {
     dispatcher: IsaGjkDispatcher,
-    shapes: [ConvexPolyhedron; 2],
+    shapes: [SharedShape; 2],
 }
 
 impl Changing {
     fn new(dice: &mut Dice) -> Self {
         let dispatcher = IsaGjkDispatcher::default();
-        let shapes = [(); 2].map(|()| {
-            let hull = dice.hull(24, 1.0);
-            hull.shape.as_convex_polyhedron().expect("a hull").clone()
-        });
+        let shapes = [(); 2].map(|()| dice.hull(24, 1.0).shape);
         Self { dispatcher, shapes }
     }
 
     /// Doubles the first shape; its points stay at their address.
     fn grow(&mut self) {
         let [shape, other] = &mut self.shapes;
+        let other = other.as_convex_polyhedron().expect("a hull");
+        let shape = shape.make_mut().as_convex_polyhedron_mut();
+        let shape = shape.expect("a hull");
         let address = shape.points().as_ptr();
         let grown = std::mem::replace(shape, other.clone()).scaled(Vector::splat(2.0));
         *shape = grown.expect("a scaled hull");
@@ -68,14 +62,10 @@ impl Changing {
 
     /// How far apart the pair is at a place, by the manifold of a dispatcher.
     fn distance(&self, dispatcher: &IsaGjkDispatcher) -> Option<Real> {
-        let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
-        let [g1, g2] = &self.shapes;
         let pose = Pose::translation(0.3, 0.4, 0.5);
-        dispatcher
-            .contact_manifolds(&pose, g1, g2, 0.1, &mut manifolds, &mut None)
-            .expect("supported");
-        let points = manifolds.iter().flat_map(|manifold| &manifold.points);
-        points.map(|point| point.dist).reduce(Real::min)
+        let manifold = cold_manifold(dispatcher, &pose, self.shapes.each_ref(), 0.1);
+        let points = manifold.expect("supported").points;
+        points.iter().map(|point| point.dist).reduce(Real::min)
     }
 
     /// That the pair is answered as it is.

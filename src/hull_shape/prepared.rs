@@ -6,6 +6,7 @@ use std::sync::Arc;
 use parry3d::shape::{Compound, CompoundFlags, SharedShape};
 
 use super::HullShape;
+use crate::hull::HullError;
 
 /// Puts [`HullShape`]s in the place of plain hulls, also of those that are parts of compounds, for
 /// worlds that were loaded or that others have built. Colliders that share a shape share the new
@@ -35,6 +36,7 @@ use super::HullShape;
 pub struct PreparedShapes {
     /// By the address of what was prepared.
     known: HashMap<usize, Known>,
+    refused: Vec<HullError>,
 }
 
 struct Known {
@@ -46,8 +48,7 @@ struct Known {
 impl PreparedShapes {
     /// The shape with its plain hulls prepared, or the shape itself if none of them can be. Round
     /// hulls stay as they are, and compounds with [`CompoundFlags::FIX_INTERNAL_EDGES`], of which
-    /// parry could not smooth prepared parts. ([`HullShape::try_from`] tells what is wrong with a
-    /// hull.)
+    /// parry could not smooth prepared parts.
     pub fn prepare(&mut self, shape: &SharedShape) -> SharedShape {
         let address = Arc::as_ptr(&shape.0).addr();
         if let Some(known) = self.known.get(&address) {
@@ -62,10 +63,18 @@ impl PreparedShapes {
         prepared
     }
 
+    /// What was wrong with each plain hull that had to stay one.
+    pub fn refused(&self) -> &[HullError] {
+        &self.refused
+    }
+
     fn replacement(&mut self, shape: &SharedShape) -> Option<SharedShape> {
         if let Some(polyhedron) = shape.as_convex_polyhedron() {
-            let hull = HullShape::try_from(polyhedron.clone()).ok()?;
-            return Some(SharedShape::new(hull));
+            let hull = HullShape::try_from(polyhedron.clone());
+            return hull
+                .map(SharedShape::new)
+                .map_err(|error| self.refused.push(error))
+                .ok();
         }
         let compound = shape.as_compound()?;
         if compound.flags().contains(CompoundFlags::FIX_INTERNAL_EDGES) {

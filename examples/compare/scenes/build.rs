@@ -27,10 +27,7 @@ pub fn fill(
     let mut random = Rand32::new(params.seed);
     let shapes = shapes(scene, params, &mut random)?;
     let colliders = if hull_shape {
-        shapes
-            .iter()
-            .map(hulls::prepared)
-            .collect::<Result<_, _>>()?
+        hulls::prepared(&shapes)?
     } else {
         shapes.clone()
     };

@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 use std::fs;
 use std::path::Path;
 
-use isa_gjk::HullShape;
+use isa_gjk::hull_shape::PreparedShapes;
 use oorandom::Rand32;
 use rapier3d::prelude::*;
 use serde_json::Value;
@@ -112,20 +112,13 @@ fn hull(points: &[Vector], origin: &str) -> Result<SharedShape, String> {
     })
 }
 
-/// The shape with [`HullShape`]s in the place of plain hulls.
-pub fn prepared(shape: &SharedShape) -> Result<SharedShape, String> {
-    match shape.as_typed_shape() {
-        TypedShape::ConvexPolyhedron(hull) => HullShape::try_from(hull.clone())
-            .map(SharedShape::new)
-            .map_err(|error| format!("a hull cannot be prepared: {error}")),
-        TypedShape::Compound(compound) => {
-            let parts = compound.shapes().iter();
-            let prepared = parts.map(|(pose, part)| Ok((*pose, prepared(part)?)));
-            Ok(SharedShape::compound(
-                prepared.collect::<Result<_, String>>()?,
-            ))
-        }
-        _ => Ok(shape.clone()),
+/// The shapes with `HullShape`s in the place of plain hulls.
+pub fn prepared(shapes: &[SharedShape]) -> Result<Vec<SharedShape>, String> {
+    let mut known = PreparedShapes::default();
+    let prepared = shapes.iter().map(|shape| known.prepare(shape)).collect();
+    match known.refused().first() {
+        Some(error) => Err(format!("a hull cannot be prepared: {error}")),
+        None => Ok(prepared),
     }
 }
 
