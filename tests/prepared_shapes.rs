@@ -61,6 +61,24 @@ fn hulls_are_prepared_once() {
     assert!(same(&prepared, &shapes.prepare(&prepared)));
 }
 
+/// As the hulls of a loaded world are, in which no collider shares its shape.
+#[test]
+fn equal_hulls_are_prepared_once() {
+    let mut dice = Dice::new(105);
+    let hull = dice.hull(40, 1.0).shape;
+    let polyhedron = hull.as_convex_polyhedron().expect("a hull");
+    let mut shapes = PreparedShapes::default();
+    let prepared = shapes.prepare(&hull);
+    let copy = SharedShape::new(polyhedron.clone());
+    assert!(!same(&hull, &copy));
+    assert!(same(&prepared, &shapes.prepare(&copy)));
+    let larger = polyhedron.clone().scaled(Vector::splat(1.001));
+    let larger = SharedShape::new(larger.expect("still a hull"));
+    let prepared_larger = shapes.prepare(&larger);
+    assert!(!same(&prepared, &prepared_larger));
+    assert_alike(&larger, &prepared_larger);
+}
+
 /// A shape that is dropped leaves its address to none that would be taken for it.
 #[test]
 fn dropped_shapes_are_not_mistaken() {

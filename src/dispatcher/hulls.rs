@@ -6,13 +6,16 @@
 //! hull, whatever the allocator or the user did in between; the table is a pure function of the
 //! shapes, and no answer depends on its history. Where the user promises that no shape changes for
 //! a while, the first use in that span compares for all of them.
+//!
+//! Each thread has a table of its own, which needs no lock; the hulls themselves are shared.
 
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
+use std::sync::Arc;
 
-use glam::Vec3;
 use parry3d::shape::ConvexPolyhedron;
 
+use super::preparation::Preparation;
 use super::unchanged::Span;
 use crate::hull::Hull;
 
@@ -43,10 +46,7 @@ type Address = usize;
 
 struct Slot {
     address: Address,
-    /// `None` where no hull can be built: such a shape is left to parry.
-    hull: Option<Hull>,
-    /// The points it was built from, where they are not the hull's own.
-    source: Option<Box<[Vec3]>>,
+    prepared: Arc<Preparation>,
     last_use: u64,
     /// In which it was proved last.
     span: Option<Span>,
@@ -54,39 +54,18 @@ struct Slot {
 
 impl Slot {
     fn new(address: Address, polyhedron: &ConvexPolyhedron) -> Self {
-        let points = polyhedron.points();
-        let hull = Hull::try_from(polyhedron).ok();
-        let same = hull
-            .as_ref()
-            .is_some_and(|h| same_points(h.points(), points));
         Self {
             address,
-            hull,
-            source: (!same).then(|| points.into()),
+            prepared: Preparation::of(polyhedron),
             last_use: 0,
             span: None,
         }
     }
 
-    fn is_of(&self, points: &[Vec3]) -> bool {
-        match (&self.source, &self.hull) {
-            (Some(source), _) => same_points(source, points),
-            (None, Some(hull)) => same_points(hull.points(), points),
-            (None, None) => false,
-        }
-    }
-
+    /// What goes with it, if nobody else has it.
     fn bytes(&self) -> usize {
-        let hull = self.hull.as_ref().map_or(0, Hull::heap_bytes);
-        let source = self.source.as_ref().map_or(0, |s| size_of_val(&**s));
-        size_of::<Self>() + hull + source
+        size_of::<Self>() + self.prepared.bytes()
     }
-}
-
-/// Bit by bit: one comparison of memory.
-#[inline]
-fn same_points(a: &[Vec3], b: &[Vec3]) -> bool {
-    bytemuck::cast_slice::<Vec3, u8>(a) == bytemuck::cast_slice::<Vec3, u8>(b)
 }
 
 /// A place in the table, good until room is made.
@@ -184,13 +163,17 @@ impl HullTable {
             self.entries.get(&address).copied()
         };
         let slot = match known {
-            Some(i) if self.is_proved(i) || self.slots[i].is_of(points) => i,
+            Some(i) if self.is_proved(i) || self.slots[i].prepared.is_of(points) => i,
             _ => self.insert(address, polyhedron, known),
         };
         *self.recent.class(address) = (address, slot);
         self.slots[slot].last_use = self.clock;
         self.slots[slot].span = self.span;
-        self.slots[slot].hull.is_some().then_some(HullRef(slot))
+        self.slots[slot]
+            .prepared
+            .hull()
+            .is_some()
+            .then_some(HullRef(slot))
     }
 
     /// Whether it was proved in the span that is under way: the points at its address are the same.
@@ -221,7 +204,7 @@ impl HullTable {
     /// The hull at a place that [`find`](Self::find) gave.
     #[inline]
     pub fn get(&self, place: HullRef) -> Option<&Hull> {
-        self.slots.get(place.0)?.hull.as_ref()
+        self.slots.get(place.0)?.prepared.hull()
     }
 }
 

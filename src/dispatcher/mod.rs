@@ -12,6 +12,7 @@ mod mesh;
 mod pair;
 mod parts;
 mod points;
+mod preparation;
 mod scene;
 mod sub_pairs;
 mod unchanged;

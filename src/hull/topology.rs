@@ -5,8 +5,9 @@
 //! vertex have one cyclic order, and neighbours in that order span the triangles again.
 
 use std::cmp::Ordering;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 use parry3d::shape::ConvexPolyhedron;
 
 use super::{Hull, HullError};
@@ -22,6 +23,30 @@ impl TryFrom<&ConvexPolyhedron> for Hull {
             .and_then(|triangles| Self::from_triangles(points.to_vec(), &triangles).ok())
             .map_or_else(|| Self::from_points(points), Ok)
     }
+}
+
+/// A number that depends on nothing but the points and edges of a polyhedron, of which its hull is
+/// made; two that differ hardly ever share it.
+pub(crate) fn fingerprint(polyhedron: &ConvexPolyhedron) -> u64 {
+    // This hasher has no seed.
+    let mut hasher = DefaultHasher::new();
+    hasher.write(bytemuck::cast_slice(polyhedron.points()));
+    for edge in polyhedron.edges() {
+        edge.vertices.hash(&mut hasher);
+    }
+    hasher.finish()
+}
+
+/// Whether two polyhedra have the same points and edges, so that their hulls are the same.
+pub(crate) fn is_same(a: &ConvexPolyhedron, b: &ConvexPolyhedron) -> bool {
+    let [edges_a, edges_b] = [a, b].map(|p| p.edges().iter().map(|edge| edge.vertices));
+    same_points(a.points(), b.points()) && edges_a.eq(edges_b)
+}
+
+/// Whether two lists of points are the same bit by bit: one comparison of memory.
+#[inline]
+pub(crate) fn same_points(a: &[Vec3], b: &[Vec3]) -> bool {
+    bytemuck::cast_slice::<Vec3, u8>(a) == bytemuck::cast_slice::<Vec3, u8>(b)
 }
 
 /// The triangles of a polyhedron, counter-clockwise from outside; `None` if they cannot be told.

@@ -3,14 +3,15 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use parry3d::shape::{Compound, CompoundFlags, SharedShape};
+use parry3d::shape::{Compound, CompoundFlags, ConvexPolyhedron, SharedShape};
 
 use super::HullShape;
 use crate::hull::HullError;
+use crate::hull::topology::{fingerprint, is_same};
 
 /// Puts [`HullShape`]s in the place of plain hulls, also of those that are parts of compounds, for
-/// worlds that were loaded or that others have built. Colliders that share a shape share the new
-/// one, too.
+/// worlds that were loaded or that others have built. Colliders that share a shape, or have equal
+/// hulls, share the new one: in a loaded world each collider has a shape of its own.
 ///
 /// ```
 /// use isa_gjk::HullShape;
@@ -36,6 +37,8 @@ use crate::hull::HullError;
 pub struct PreparedShapes {
     /// By the address of what was prepared.
     known: HashMap<usize, Known>,
+    /// By the fingerprint of the polyhedron.
+    hulls: HashMap<u64, Vec<SharedShape>>,
     refused: Vec<HullError>,
 }
 
@@ -70,11 +73,7 @@ impl PreparedShapes {
 
     fn replacement(&mut self, shape: &SharedShape) -> Option<SharedShape> {
         if let Some(polyhedron) = shape.as_convex_polyhedron() {
-            let hull = HullShape::try_from(polyhedron.clone());
-            return hull
-                .map(SharedShape::new)
-                .map_err(|error| self.refused.push(error))
-                .ok();
+            return self.hull(polyhedron);
         }
         let compound = shape.as_compound()?;
         if compound.flags().contains(CompoundFlags::FIX_INTERNAL_EDGES) {
@@ -90,5 +89,28 @@ impl PreparedShapes {
             .zip(&prepared)
             .any(|((_, old), (_, new))| !Arc::ptr_eq(&old.0, &new.0));
         is_new.then(|| SharedShape::new(Compound::new(prepared)))
+    }
+
+    /// A `HullShape` of this polyhedron, or of one that is equal to it.
+    fn hull(&mut self, polyhedron: &ConvexPolyhedron) -> Option<SharedShape> {
+        let alike = self.hulls.entry(fingerprint(polyhedron)).or_default();
+        let of_this = |shape: &&SharedShape| {
+            let hull = shape.as_shape::<HullShape>();
+            hull.is_some_and(|hull| is_same(&hull.parts.polyhedron, polyhedron))
+        };
+        if let Some(known) = alike.iter().find(of_this) {
+            return Some(known.clone());
+        }
+        match HullShape::try_from(polyhedron.clone()) {
+            Ok(hull) => {
+                let shape = SharedShape::new(hull);
+                alike.push(shape.clone());
+                Some(shape)
+            }
+            Err(error) => {
+                self.refused.push(error);
+                None
+            }
+        }
     }
 }

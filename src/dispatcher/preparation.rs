@@ -1,0 +1,178 @@
+//! What is prepared of plain polyhedra, shared by all that need the same.
+//!
+//! Each thread of a pool meets every hull sooner or later; in a loaded world each collider has a shape
+//! of its own, and worlds that are simulated side by side are made alike. One prepared hull serves all
+//! of them: it is prepared once, and it is in the caches of the machine once.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+
+use glam::Vec3;
+use parry3d::shape::ConvexPolyhedron;
+
+use crate::hull::Hull;
+use crate::hull::topology::{fingerprint, same_points};
+
+/// What is prepared of a polyhedron. Whether it is of this one is to be proved by
+/// [`is_of`](Self::is_of).
+#[derive(Debug)]
+pub(super) struct Preparation {
+    /// `None` where no hull can be built: such a shape is left to parry.
+    hull: Option<Hull>,
+    /// The points it was built from, where they are not the hull's own.
+    source: Option<Box<[Vec3]>>,
+}
+
+impl Preparation {
+    /// That of another polyhedron with the same points and edges, if one is in use; else a new one.
+    ///
+    /// Points are compared. Edges count by the fingerprint: should it ever deceive, the hull has other
+    /// diagonals on its faces, and is as good.
+    pub fn of(polyhedron: &ConvexPolyhedron) -> Arc<Self> {
+        let key = fingerprint(polyhedron);
+        let points = polyhedron.points();
+        let known = InUse::with(|in_use| in_use.find(key, points));
+        // Other threads need not wait until it is built. Of those that build the same, one will be
+        // the first.
+        known.unwrap_or_else(|| {
+            let new = Arc::new(Self::new(polyhedron));
+            InUse::with(|in_use| {
+                in_use
+                    .find(key, points)
+                    .unwrap_or_else(|| in_use.add(key, new))
+            })
+        })
+    }
+
+    fn new(polyhedron: &ConvexPolyhedron) -> Self {
+        let points = polyhedron.points();
+        let hull = Hull::try_from(polyhedron).ok();
+        let own = hull.as_ref().map(Hull::points);
+        let is_own = own.is_some_and(|own| same_points(own, points));
+        Self {
+            source: (!is_own).then(|| points.into()),
+            hull,
+        }
+    }
+
+    /// Whether it was made of these points.
+    #[inline]
+    pub fn is_of(&self, points: &[Vec3]) -> bool {
+        match (&self.source, &self.hull) {
+            (Some(source), _) => same_points(source, points),
+            (None, Some(hull)) => same_points(hull.points(), points),
+            (None, None) => false,
+        }
+    }
+
+    #[inline]
+    pub fn hull(&self) -> Option<&Hull> {
+        self.hull.as_ref()
+    }
+
+    pub fn bytes(&self) -> usize {
+        let hull = self.hull.as_ref().map_or(0, Hull::heap_bytes);
+        let source = self.source.as_ref().map_or(0, |s| size_of_val(&**s));
+        size_of::<Self>() + hull + source
+    }
+}
+
+/// All that some thread has, by fingerprints of the polyhedra. It is asked only about polyhedra that a
+/// thread meets for the first time.
+struct InUse {
+    shared: BTreeMap<u64, Vec<Weak<Preparation>>>,
+    /// At how many fingerprints those are dropped that nobody uses any more.
+    sweep_at: usize,
+}
+
+static IN_USE: Mutex<InUse> = Mutex::new(InUse {
+    shared: BTreeMap::new(),
+    sweep_at: 0,
+});
+
+impl InUse {
+    fn with<T>(work: impl FnOnce(&mut Self) -> T) -> T {
+        // A panic elsewhere leaves nothing half done here.
+        work(&mut IN_USE.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn find(&self, key: u64, points: &[Vec3]) -> Option<Arc<Preparation>> {
+        let mut alike = self.shared.get(&key)?.iter().filter_map(Weak::upgrade);
+        alike.find(|prepared| prepared.is_of(points))
+    }
+
+    fn add(&mut self, key: u64, new: Arc<Preparation>) -> Arc<Preparation> {
+        if self.shared.len() >= self.sweep_at {
+            self.shared.retain(|_, alike| {
+                alike.retain(|prepared| prepared.strong_count() > 0);
+                !alike.is_empty()
+            });
+            self.sweep_at = 2 * self.shared.len() + 1;
+        }
+        self.shared
+            .entry(key)
+            .or_default()
+            .push(Arc::downgrade(&new));
+        new
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::thread;
+
+    use super::*;
+
+    /// A square pyramid, over either diagonal of its base.
+    fn pyramid(height: f32, other_diagonal: bool) -> ConvexPolyhedron {
+        let base = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+        let mut points: Vec<Vec3> = base.map(|[x, z]| Vec3::new(x, 0.0, z)).into();
+        points.push(Vec3::new(0.0, height, 0.0));
+        let mut triangles = vec![[0, 4, 1], [1, 4, 2], [2, 4, 3], [3, 4, 0]];
+        triangles.extend(if other_diagonal {
+            [[0, 1, 3], [1, 2, 3]]
+        } else {
+            [[0, 1, 2], [0, 2, 3]]
+        });
+        ConvexPolyhedron::from_convex_mesh(points, &triangles).expect("parry takes it")
+    }
+
+    #[test]
+    fn equal_polyhedra_share_what_is_prepared() {
+        let here = Preparation::of(&pyramid(1.0, false));
+        assert!(here.hull().is_some());
+        let there = thread::spawn(|| Preparation::of(&pyramid(1.0, false)));
+        let there = there.join().expect("no panic");
+        assert!(Arc::ptr_eq(&here, &there));
+        let higher = Preparation::of(&pyramid(1.5, false));
+        assert!(!Arc::ptr_eq(&here, &higher));
+        assert!(higher.is_of(pyramid(1.5, false).points()));
+    }
+
+    /// The names of features depend on the edges.
+    #[test]
+    fn other_edges_are_another_polyhedron() {
+        let [one, other] = [false, true].map(|diagonal| Preparation::of(&pyramid(1.0, diagonal)));
+        assert!(one.is_of(pyramid(1.0, true).points()));
+        assert!(!Arc::ptr_eq(&one, &other));
+    }
+
+    #[test]
+    fn that_there_is_no_hull_is_shared_as_well() {
+        let [flat, again] = [(); 2].map(|()| Preparation::of(&pyramid(1e-9, false)));
+        assert!(flat.hull().is_none());
+        assert!(Arc::ptr_eq(&flat, &again));
+    }
+
+    #[test]
+    fn what_nobody_uses_is_not_kept() {
+        let used = Preparation::of(&pyramid(2.0, false));
+        for i in 0..1000 {
+            let seen = Arc::downgrade(&Preparation::of(&pyramid(3.0 + i as f32, false)));
+            assert_eq!(seen.strong_count(), 0);
+        }
+        let kept = InUse::with(|in_use| in_use.shared.len());
+        assert!(kept < 100, "{kept} fingerprints");
+        assert!(Arc::ptr_eq(&used, &Preparation::of(&pyramid(2.0, false))));
+    }
+}
