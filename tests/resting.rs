@@ -26,6 +26,7 @@ fn params(hulls: HullSource, bodies: u32) -> SceneParams {
         recycling: true,
         hull_shape: false,
         unchanged_shapes: false,
+        own_shapes: false,
         can_sleep: true,
     }
 }

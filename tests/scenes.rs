@@ -26,6 +26,7 @@ fn params(scene: Scene, hull_shape: bool) -> SceneParams {
         recycling: true,
         hull_shape,
         unchanged_shapes: false,
+        own_shapes: false,
         can_sleep: scene == Scene::Asleep,
     }
 }

@@ -67,6 +67,10 @@ pub struct Options {
     #[arg(long)]
     unchanged_shapes: bool,
 
+    /// Give each collider a shape of its own, in both worlds: copies, as in a world that was loaded
+    #[arg(long, conflicts_with = "hull_shape")]
+    own_shapes: bool,
+
     /// Whole runs; the table shows the median of each figure and of each ratio over them
     #[arg(long, default_value_t = 1, value_parser = value_parser!(u32).range(1..=1000))]
     pub repeat: u32,
@@ -158,6 +162,7 @@ impl Options {
             recycling: self.recycling == Switch::On,
             hull_shape: self.hull_shape,
             unchanged_shapes: self.unchanged_shapes,
+            own_shapes: self.own_shapes,
             can_sleep: self.sleep || self.scene == Scene::Asleep,
         })
     }

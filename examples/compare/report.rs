@@ -20,6 +20,7 @@ pub struct Report {
     recycling: bool,
     hull_shape: bool,
     unchanged_shapes: bool,
+    own_shapes: bool,
     warmup: usize,
     frames: usize,
     repeat: usize,
@@ -77,6 +78,7 @@ impl Report {
             recycling: params.recycling,
             hull_shape: params.hull_shape,
             unchanged_shapes: params.unchanged_shapes,
+            own_shapes: params.own_shapes,
             warmup: length.warmup,
             frames: length.frames,
             repeat: runs.len(),
@@ -218,9 +220,14 @@ impl fmt::Display for Report {
             (false, true) => " (unchanged in a step, as isa-gjk is told)",
             (false, false) => "",
         };
+        let own = if self.own_shapes {
+            " that no two bodies share"
+        } else {
+            ""
+        };
         writeln!(
             f,
-            "{}: {} bodies, {}{prepared}, seed {}, recycling {recycling}",
+            "{}: {} bodies, {}{own}{prepared}, seed {}, recycling {recycling}",
             self.scene, self.bodies, self.hulls, self.seed
         )?;
         writeln!(

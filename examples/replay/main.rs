@@ -92,6 +92,7 @@ impl Options {
             recycling: true,
             hull_shape: false,
             unchanged_shapes: false,
+            own_shapes: false,
             can_sleep: true,
             hulls,
         }

@@ -12,6 +12,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use isa_gjk::IsaGjkDispatcher;
+use rapier3d::prelude::SharedShape;
 
 pub use world::World;
 
@@ -223,6 +224,8 @@ pub struct SceneParams {
     pub hull_shape: bool,
     /// Whether our dispatcher is told that shapes do not change within a step.
     pub unchanged_shapes: bool,
+    /// Whether no two colliders share a shape: each has a copy.
+    pub own_shapes: bool,
     /// Whether bodies may fall asleep. Those that do cost nothing, and figures of time would say
     /// so of both worlds.
     pub can_sleep: bool,
@@ -238,5 +241,11 @@ pub fn build(
     let mut world = World::new(dispatcher, params.unchanged_shapes);
     world.physics.integration_parameters.contact_recycling = params.recycling;
     build::fill(&mut world, scene, params, hull_shape)?;
+    if params.own_shapes {
+        for (_, collider) in world.physics.colliders.iter_mut() {
+            let copy = collider.shape().clone_dyn();
+            collider.set_shape(SharedShape(copy.into()));
+        }
+    }
     Ok(world)
 }
