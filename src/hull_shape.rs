@@ -35,8 +35,7 @@
 //!
 //! # Memory
 //! The polyhedron costs about 250 bytes per vertex and the prepared hull about 130
-//! ([`Hull::heap_bytes`]). A plain collider costs the same where our dispatcher answers, and the
-//! latter once per thread.
+//! ([`Hull::heap_bytes`]). A plain collider costs the same where our dispatcher answers.
 
 mod bounds;
 mod features;

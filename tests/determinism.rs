@@ -1,7 +1,8 @@
 //! Equal worlds have equal histories, bit for bit.
 //!
 //! Two runs in one process, a run on another thread whose table of prepared hulls is empty, pools
-//! of one and of several threads, and builds with other features: none of them may show in a bit.
+//! of one and of several threads, shapes that are shared or copied, and builds with other features:
+//! none of them may show in a bit.
 //! Rapier itself promises the latter only with `enhanced-determinism`, so what is compared between
 //! builds is the contacts alone.
 
@@ -12,7 +13,7 @@ use common::memory::Memory;
 use common::world::{Ground, mixed, ours, state};
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::Real;
-use rapier3d::prelude::PhysicsWorld;
+use rapier3d::prelude::{PhysicsWorld, SharedShape};
 
 const BODIES: usize = 35;
 const FRAMES: usize = 120;
@@ -42,6 +43,24 @@ fn equal_worlds_have_equal_histories() {
         let there = std::thread::spawn(move || run(start(ground)));
         let there = there.join().expect("no panic");
         assert!(here == there, "on another thread, on {ground:?}");
+    }
+}
+
+/// Colliders that share a shape, and those that have equal shapes of their own, as in a loaded world.
+#[test]
+fn shared_shapes_do_not_show() {
+    for ground in Ground::ALL {
+        let run_with = |shape: fn(&SharedShape) -> SharedShape| {
+            let mut world = start(ground);
+            for (_, collider) in world.colliders.iter_mut() {
+                let shape = shape(collider.shared_shape());
+                collider.set_shape(shape);
+            }
+            run(world)
+        };
+        let shared = run_with(SharedShape::clone);
+        let own = run_with(|shape| SharedShape(shape.clone_dyn().into()));
+        assert!(shared == own, "on {ground:?}");
     }
 }
 
