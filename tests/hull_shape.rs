@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 use std::fmt::Debug;
 
 use common::cases::{Hull, hulls};
-use common::generate::Dice;
+use common::generate::{Dice, prepared};
 use common::memory::{Manifold, Memory};
 use common::oracle::Solid;
 use common::report::{Finding, Report};
@@ -24,11 +24,6 @@ use parry3d::shape::{FeatureId, PolygonalFeature, ShapeType, SharedShape, TypedS
 
 /// What f32 coordinates and answers allow, relative to the numbers they are made of.
 const ROUNDING: f64 = 2e-6;
-
-fn prepared(plain: &SharedShape) -> SharedShape {
-    let polyhedron = plain.as_convex_polyhedron().expect("a convex polyhedron");
-    SharedShape::new(HullShape::try_from(polyhedron.clone()).expect("a solid"))
-}
 
 fn hull_shape(shape: &SharedShape) -> &HullShape {
     shape.as_shape().expect("a hull shape")

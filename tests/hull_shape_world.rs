@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::generate::Dice;
+use common::generate::{Dice, prepared};
 use isa_gjk::{HullShape, IsaGjkDispatcher};
 use rapier3d::prelude::*;
 
@@ -40,11 +40,6 @@ fn plain_hulls() -> Vec<SharedShape> {
     [8, 16, 30, 250]
         .map(|corners| dice.hull(corners, 0.9).shape)
         .into()
-}
-
-fn prepared(plain: &SharedShape) -> SharedShape {
-    let polyhedron = plain.as_convex_polyhedron().expect("a convex polyhedron");
-    SharedShape::new(HullShape::try_from(polyhedron.clone()).expect("a solid"))
 }
 
 fn hull_shapes() -> Vec<SharedShape> {

@@ -7,13 +7,13 @@
 mod common;
 
 use common::cases::Hull;
-use common::generate::Dice;
+use common::generate::{Dice, prepared};
 use common::oracle::{Solid, signed_distance};
 use common::pose::ExactPose;
 use common::report::{Finding, Report};
 use common::zoo::zoo;
 use glam::{DQuat, DVec3};
-use isa_gjk::{HullShape, IsaGjkDispatcher};
+use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{
     ClosestPoints, DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit,
@@ -95,8 +95,7 @@ fn a_compound_is_as_near_as_its_nearest_hull() {
     let mut dice = Dice::new(41);
     for turn in 0..60 {
         let (body, hull) = (Body::new(&mut dice), dice.hull(40, 0.8));
-        let prepared = HullShape::try_from(hull.shape.as_convex_polyhedron().unwrap().clone());
-        let prepared = SharedShape::new(prepared.expect("a solid"));
+        let prepared = prepared(&hull.shape);
         for _ in 0..4 {
             let pose = dice.pose(1.6);
             let exact = body.signed_distance(&hull.solid, &pose);

@@ -7,9 +7,8 @@ mod common;
 
 use std::time::Instant;
 
-use common::generate::Dice;
+use common::generate::{Dice, prepared};
 use common::world::{Ground, deepest, mixed, ours, shapes, start};
-use isa_gjk::HullShape;
 use rapier3d::prelude::*;
 
 const BODIES: usize = 40;
@@ -61,11 +60,7 @@ impl Soak {
     fn some_shape(&mut self) -> SharedShape {
         match self.dice.count(0, 3) {
             0 => self.dice.hull(16, 0.7).shape,
-            1 => {
-                let hull = self.dice.hull(40, 0.7).shape;
-                let polyhedron = hull.as_convex_polyhedron().expect("a hull").clone();
-                SharedShape::new(HullShape::try_from(polyhedron).expect("a solid"))
-            }
+            1 => prepared(&self.dice.hull(40, 0.7).shape),
             _ => self.shapes[self.dice.count(0, self.shapes.len() - 1)].clone(),
         }
     }

@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec3};
+use isa_gjk::HullShape;
 use oorandom::Rand64;
 use parry3d::math::Vector;
 use parry3d::shape::SharedShape;
@@ -11,6 +12,12 @@ use parry3d::transformation::try_convex_hull;
 use super::cases::Hull;
 use super::oracle::Solid;
 use super::pose::ExactPose;
+
+/// A plain hull as a `HullShape`.
+pub fn prepared(plain: &SharedShape) -> SharedShape {
+    let polyhedron = plain.as_convex_polyhedron().expect("a convex polyhedron");
+    SharedShape::new(HullShape::try_from(polyhedron.clone()).expect("a solid"))
+}
 
 /// A seeded source of geometry.
 pub struct Dice(Rand64);

@@ -1,10 +1,10 @@
 //! Worlds in which every way of meeting a hull happens.
 
-use isa_gjk::{HullShape, IsaGjkDispatcher};
+use isa_gjk::IsaGjkDispatcher;
 use parry3d::utils::Array2;
 use rapier3d::prelude::*;
 
-use super::generate::Dice;
+use super::generate::{Dice, prepared};
 
 /// What the bodies fall on.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +54,6 @@ impl Ground {
 pub fn shapes(dice: &mut Dice) -> Vec<SharedShape> {
     let [small, medium, large] = [8, 24, 80].map(|corners| dice.hull(corners, 0.8).shape);
     let polyhedron = medium.as_convex_polyhedron().expect("a hull");
-    let prepared = HullShape::try_from(polyhedron.clone()).expect("a solid");
     let aside = |x: Real| Pose::translation(x, 0.0, 0.1 * x);
     let ends = vec![(aside(-0.3), small.clone()), (aside(0.3), large.clone())];
     let round = SharedShape::round_convex_hull(polyhedron.points(), 0.05).expect("a solid");
@@ -63,7 +62,7 @@ pub fn shapes(dice: &mut Dice) -> Vec<SharedShape> {
         SharedShape::compound(ends),
         large,
         SharedShape::cuboid(0.3, 0.25, 0.35),
-        SharedShape::new(prepared),
+        prepared(&medium),
         round,
         SharedShape::ball(0.35),
     ]

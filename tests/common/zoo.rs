@@ -1,11 +1,10 @@
 //! One of every type of shape, and poses to bring any two of them together.
 
-use isa_gjk::HullShape;
 use parry3d::math::{IVector, Pose, Real, Rotation, Vector};
 use parry3d::shape::SharedShape;
 use parry3d::utils::Array2;
 
-use super::generate::{Dice, hull_of};
+use super::generate::{Dice, hull_of, prepared};
 
 /// A shape about one unit across.
 pub struct Exhibit {
@@ -35,8 +34,7 @@ pub fn zoo() -> Vec<Exhibit> {
         (aside(-0.4), SharedShape::ball(0.3)),
         (aside(0.4), SharedShape::cuboid(0.3, 0.3, 0.3)),
     ]);
-    let plain = hull.as_convex_polyhedron().expect("a convex polyhedron");
-    let hull_shape = SharedShape::new(HullShape::try_from(plain.clone()).expect("a solid"));
+    let hull_shape = prepared(&hull);
     let (a, b, c) = (
         Vector::new(-0.5, -0.3, 0.0),
         Vector::new(0.5, -0.3, 0.1),
