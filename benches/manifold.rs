@@ -96,6 +96,8 @@ fn others(criterion: &mut Criterion) {
         ("segment", SharedShape::segment(Vector::ZERO, Vector::X)),
         ("half-space", SharedShape::halfspace(up)),
         ("cuboid", SharedShape::cuboid(0.5, 0.6, 0.7)),
+        ("cylinder", SharedShape::cylinder(0.5, 0.4)),
+        ("cone", SharedShape::cone(0.5, 0.4)),
     ];
     for (name, other) in others {
         for (gap_name, gap) in GAPS {

@@ -13,6 +13,7 @@
 //! What another dispatcher or a different pair left there is as good as any other hint.
 
 use glam::{DVec3, Vec3};
+use parry3d::math::Rotation;
 use parry3d::query::ContactManifold;
 use parry3d::shape::PackedFeatureId;
 
@@ -51,6 +52,19 @@ pub(super) fn write_axis<M, C>(manifold: &mut ContactManifold<M, C>, apart: &Sep
     manifold.points.clear();
     manifold.local_n1 = apart.axis.as_vec3();
     manifold.local_n2 = Vec3::new(apart.ids[0] as f32, apart.ids[1] as f32, 0.0);
+}
+
+/// Parry's routines keep a separating axis in the frame of the manifold's first shape, as one from
+/// it to the second: from ours to theirs by the `rotation` of the second in that frame, and back by its
+/// inverse.
+pub(super) fn turn_axis<M, C>(
+    manifold: &mut ContactManifold<M, C>,
+    swapped: bool,
+    rotation: Rotation,
+) {
+    if swapped && manifold.points.is_empty() {
+        manifold.local_n1 = -(rotation * manifold.local_n1);
+    }
 }
 
 /// Leaves a contact that was discarded, as a place for the next query to start from.

@@ -3,16 +3,17 @@
 use glam::DVec3;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus};
-use parry3d::shape::Shape;
+use parry3d::shape::{PolygonalFeatureMap, Shape};
 
 use super::pair::{self, Pair, PairVisitor, Scratch};
 use super::scene::{Near, Seen};
+use crate::hull::Hull;
 use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Query};
 use crate::ray_cast::{Impact, RayCast, ray_cast};
 use crate::simplex::Preferred;
 use crate::stats::Cost;
-use crate::support::{Cso, Polytope};
+use crate::support::{Cso, Polytope, Support};
 use crate::tolerance::{GRAZING, RAY_TOUCHING};
 
 /// When shape 2, moving by `velocity` relative to shape 1 (in frame 1), meets shape 1. The outer
@@ -41,7 +42,32 @@ struct Cast<'a> {
 impl PairVisitor for Cast<'_> {
     type Answer = Option<ShapeCastHit>;
 
+    const CURVED: bool = true;
+
     fn visit<B: Polytope>(self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer> {
+        self.cast(pair, |cso, velocity, seen| {
+            self.overlap(cso, velocity, seen, scratch)
+        })
+    }
+
+    /// How deep they overlap is parry's to say.
+    fn visit_curved<B: Support>(
+        self,
+        pair: &Pair<'_, B>,
+        _: &dyn PolygonalFeatureMap,
+        _: &mut Scratch,
+    ) -> Option<Self::Answer> {
+        self.cast(pair, |_, _, _| None)
+    }
+}
+
+impl Cast<'_> {
+    /// `overlap` answers for shapes that are within the target distance from the beginning.
+    fn cast<B: Support>(
+        &self,
+        pair: &Pair<'_, B>,
+        overlap: impl FnOnce(&Cso<'_, Hull, B>, DVec3, &Seen<'_>) -> Option<Option<ShapeCastHit>>,
+    ) -> Option<Option<ShapeCastHit>> {
         let moves = self.velocity.is_finite() && self.velocity != Vector::ZERO;
         if !(moves && RelativePose::is_valid(self.pos12)) {
             return Some(None);
@@ -68,14 +94,12 @@ impl PairVisitor for Cast<'_> {
             RayCast::Hit(impact) => Some(Some(hit_at(&impact, velocity, &seen))),
             // Also false for NaN.
             RayCast::Overlap if self.options.max_time_of_impact >= 0.0 => {
-                self.overlap(&cso, velocity, &seen, scratch)
+                overlap(&cso, velocity, &seen)
             }
             RayCast::Overlap => Some(None),
         }
     }
-}
 
-impl Cast<'_> {
     /// Not negative, and not NaN.
     fn target_distance(&self) -> Real {
         self.options.target_distance.max(0.0)

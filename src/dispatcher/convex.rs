@@ -3,7 +3,8 @@
 use glam::DVec3;
 use parry3d::math::{Pose, Real};
 use parry3d::query::ContactManifold;
-use parry3d::query::details::NormalConstraintsPair;
+use parry3d::query::details::{NormalConstraintsPair, contact_manifold_pfm_pfm};
+use parry3d::shape::PolygonalFeatureMap;
 
 use super::constraints::Constraints;
 use super::pair::{HalfSpace, Pair, PairVisitor, Scratch};
@@ -14,7 +15,7 @@ use crate::manifold::{self, ClipScratch};
 use crate::pose::RelativePose;
 use crate::query::{Answer, Proximity, Query};
 use crate::stats::{Cost, SharedStats, Stage};
-use crate::support::{Cso, Polytope};
+use crate::support::{Cso, Polytope, Support};
 
 /// Corrected normals of mesh edges can turn a deep overlap into an absurd depth along a face
 /// that the shapes do not meet. As parry does, such points are left out beyond this multiple of
@@ -30,11 +31,13 @@ pub(super) struct UpdateManifold<'a, M, C> {
     pub stats: &'a SharedStats,
 }
 
-impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
+impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
     /// There is one unless the pair is not finite.
     type Answer = ();
 
     const HALF_SPACES: bool = true;
+
+    const CURVED: bool = true;
 
     // In a call the pair would go through memory, which small queries notice.
     #[inline(always)]
@@ -87,6 +90,36 @@ impl<M, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         }
         Some(())
     }
+
+    fn visit_curved<B: Support>(
+        self,
+        pair: &Pair<'_, B>,
+        features: &dyn PolygonalFeatureMap,
+        scratch: &mut Scratch,
+    ) -> Option<()> {
+        if !RelativePose::is_valid(self.pos12) {
+            return None;
+        }
+        if self.manifold.points.is_empty() {
+            let pose = pair.pose(self.pos12);
+            let mut cost = Cost::default();
+            let apart = Query {
+                cso: &pair.cso(&pose),
+                max_distance: pair.between_cores(self.prediction),
+                shells: None,
+                scratch: &mut scratch.epa,
+                cost: &mut cost,
+            }
+            .prove_apart(&cache::read(self.manifold, pair.swapped));
+            if let Some((apart, stage)) = apart {
+                self.stats.record(stage, &cost);
+                cache::write_axis(self.manifold, &apart);
+                return Some(());
+            }
+        }
+        self.leave_to_parry(pair, features);
+        Some(())
+    }
 }
 
 /// Where the manifold is: mostly where it was in the frame before.
@@ -99,7 +132,35 @@ fn normals(near: &Proximity, pose: &RelativePose) -> [DVec3; 2] {
     [near.normal, -pose.direction_to_2(near.normal)]
 }
 
-impl<M, C: Default + Copy> UpdateManifold<'_, M, C> {
+impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
+    /// To the routine for shapes with features, which searches with extreme vertices of the hull: ours
+    /// climbs to them.
+    fn leave_to_parry<B>(self, pair: &Pair<'_, B>, features: &dyn PolygonalFeatureMap) {
+        let rotation = self.pos12.rotation;
+        cache::turn_axis(self.manifold, pair.swapped, rotation);
+        let hull: &dyn PolygonalFeatureMap = pair.hull;
+        let [features_1, features_2] = cache::ordered([hull, features], pair.swapped);
+        let borders = pair.borders.map(|border| border as Real);
+        let [border_1, border_2] = cache::ordered(borders, pair.swapped);
+        let [c1, c2] = self.constraints;
+        c1.with(|c1| {
+            c2.with(|c2| {
+                contact_manifold_pfm_pfm(
+                    self.pos12,
+                    features_1,
+                    border_1,
+                    c1,
+                    features_2,
+                    border_2,
+                    c2,
+                    self.prediction,
+                    self.manifold,
+                );
+            });
+        });
+        cache::turn_axis(self.manifold, pair.swapped, rotation.inverse());
+    }
+
     fn write_contacts<B: Polytope>(
         self,
         pair: &Pair<'_, B>,

@@ -5,7 +5,8 @@ use std::cell::RefCell;
 use glam::DVec3;
 use parry3d::math::{Pose, Real};
 use parry3d::shape::{
-    ConvexPolyhedron, Segment as ParrySegment, Shape, ShapeType, Triangle, TypedShape,
+    ConvexPolyhedron, PolygonalFeatureMap, Segment as ParrySegment, Shape, ShapeType, Triangle,
+    TypedShape,
 };
 
 use super::hulls::{EachProved, Find, HullRef, HullTable};
@@ -15,8 +16,8 @@ use crate::hull::Hull;
 use crate::hull_shape::HullShape;
 use crate::manifold::ClipScratch;
 use crate::pose::RelativePose;
-use crate::primitive::{Ball, CuboidPolytope, Segment, TrianglePolytope};
-use crate::support::{Cso, Polytope};
+use crate::primitive::{Ball, Cone, CuboidPolytope, Cylinder, Segment, TrianglePolytope};
+use crate::support::{Cso, Polytope, Support};
 use crate::tolerance::THINNEST;
 
 /// What a thread keeps from query to query: prepared hulls, and memory to work in.
@@ -111,6 +112,9 @@ pub(super) trait PairVisitor: Sized {
     /// Whether it is to be asked about half-spaces.
     const HALF_SPACES: bool = false;
 
+    /// Whether it is to be asked about cylinders and cones.
+    const CURVED: bool = false;
+
     /// The other shape is a polytope.
     fn visit<B: Polytope>(self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer>;
 
@@ -121,6 +125,18 @@ pub(super) trait PairVisitor: Sized {
         scratch: &mut Scratch,
     ) -> Option<Self::Answer> {
         let _ = (pair, scratch);
+        None
+    }
+
+    /// The other shape is a cylinder or a cone, which has no faces for our kernels; for parry's routines
+    /// it has `features`.
+    fn visit_curved<B: Support>(
+        self,
+        pair: &Pair<'_, B>,
+        features: &dyn PolygonalFeatureMap,
+        scratch: &mut Scratch,
+    ) -> Option<Self::Answer> {
+        let _ = (pair, features, scratch);
         None
     }
 }
@@ -303,6 +319,16 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
                     visitor.visit_half_space(pair, scratch)
                 })
             }
+            ShapeType::Cylinder if V::CURVED => self.curved(other.as_cylinder()?, 0.0, visitor),
+            ShapeType::RoundCylinder if V::CURVED => {
+                let round = other.as_round_cylinder()?;
+                self.curved(&round.inner_shape, round.border_radius, visitor)
+            }
+            ShapeType::Cone if V::CURVED => self.curved(other.as_cone()?, 0.0, visitor),
+            ShapeType::RoundCone if V::CURVED => {
+                let round = other.as_round_cone()?;
+                self.curved(&round.inner_shape, round.border_radius, visitor)
+            }
             _ => None,
         }
     }
@@ -315,6 +341,18 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
         visitor: V,
     ) -> Option<V::Answer> {
         self.with(other, border, |pair, scratch| visitor.visit(pair, scratch))
+    }
+
+    #[inline]
+    fn curved<V: PairVisitor>(
+        self,
+        other: &(impl Curved + PolygonalFeatureMap),
+        border: Real,
+        visitor: V,
+    ) -> Option<V::Answer> {
+        self.with(&other.kernel()?, border, |pair, scratch| {
+            visitor.visit_curved(pair, other, scratch)
+        })
     }
 
     /// Hands over the hull together with the other shape.
@@ -336,6 +374,26 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
             };
             visit(&pair, scratch)
         })
+    }
+}
+
+/// A shape of parry's with a curved surface.
+trait Curved {
+    /// As the kernels know it; `None` if it has no volume.
+    fn kernel(&self) -> Option<impl Support>;
+}
+
+impl Curved for parry3d::shape::Cylinder {
+    fn kernel(&self) -> Option<impl Support> {
+        let (half_height, radius) = (positive(self.half_height)?, positive(self.radius)?);
+        Some(Cylinder::new(half_height, radius))
+    }
+}
+
+impl Curved for parry3d::shape::Cone {
+    fn kernel(&self) -> Option<impl Support> {
+        let (half_height, radius) = (positive(self.half_height)?, positive(self.radius)?);
+        Some(Cone::new(half_height, radius))
     }
 }
 

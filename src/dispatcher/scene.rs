@@ -5,7 +5,7 @@
 use glam::DVec3;
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ClosestPoints, Contact};
-use parry3d::shape::Shape;
+use parry3d::shape::{PolygonalFeatureMap, Shape};
 
 use super::cache::ordered;
 use super::half_space;
@@ -15,7 +15,7 @@ use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Proximity, Query};
 use crate::simplex::Preferred;
 use crate::stats::Cost;
-use crate::support::Polytope;
+use crate::support::{Polytope, Support};
 
 /// Whether two shapes touch or overlap. `None`, here and below: not a pair for us.
 pub(super) fn intersect(pos12: &Pose, shape_1: &dyn Shape, shape_2: &dyn Shape) -> Option<bool> {
@@ -152,12 +152,9 @@ struct SeparationQuery<'a> {
     max_distance: Real,
 }
 
-impl PairVisitor for SeparationQuery<'_> {
-    type Answer = Separation;
-
-    const HALF_SPACES: bool = true;
-
-    fn visit<B: Polytope>(self, pair: &Pair<'_, B>, _: &mut Scratch) -> Option<Self::Answer> {
+impl SeparationQuery<'_> {
+    /// Of a hull and any convex shape.
+    fn separation<B: Support>(&self, pair: &Pair<'_, B>) -> Option<Separation> {
         let pose = valid_pose(pair, self.pos12)?;
         let cso = pair.cso(&pose);
         let cost = &mut Cost::default();
@@ -179,6 +176,27 @@ impl PairVisitor for SeparationQuery<'_> {
                 Separation::of(Near::of_closest(&closest, &seen))
             }
         })
+    }
+}
+
+impl PairVisitor for SeparationQuery<'_> {
+    type Answer = Separation;
+
+    const HALF_SPACES: bool = true;
+
+    const CURVED: bool = true;
+
+    fn visit<B: Polytope>(self, pair: &Pair<'_, B>, _: &mut Scratch) -> Option<Self::Answer> {
+        self.separation(pair)
+    }
+
+    fn visit_curved<B: Support>(
+        self,
+        pair: &Pair<'_, B>,
+        _: &dyn PolygonalFeatureMap,
+        _: &mut Scratch,
+    ) -> Option<Self::Answer> {
+        self.separation(pair)
     }
 
     fn visit_half_space(self, pair: &Pair<'_, HalfSpace>, _: &mut Scratch) -> Option<Self::Answer> {
@@ -212,6 +230,8 @@ impl PairVisitor for ContactQuery<'_> {
 
     const HALF_SPACES: bool = true;
 
+    const CURVED: bool = true;
+
     fn visit<B: Polytope>(self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer> {
         let pose = valid_pose(pair, self.pos12)?;
         let (answer, _) = Query {
@@ -229,6 +249,24 @@ impl PairVisitor for ContactQuery<'_> {
                 Some(Near::of_proximity(&near, &seen).contact())
             }
         })
+    }
+
+    /// How deep they overlap is parry's to say.
+    fn visit_curved<B: Support>(
+        self,
+        pair: &Pair<'_, B>,
+        _: &dyn PolygonalFeatureMap,
+        _: &mut Scratch,
+    ) -> Option<Self::Answer> {
+        let query = SeparationQuery {
+            pos12: self.pos12,
+            max_distance: self.prediction,
+        };
+        match query.separation(pair)? {
+            Separation::None => None,
+            Separation::Near(near) => Some(Some(near.contact())),
+            Separation::Beyond => Some(None),
+        }
     }
 
     fn visit_half_space(self, pair: &Pair<'_, HalfSpace>, _: &mut Scratch) -> Option<Self::Answer> {

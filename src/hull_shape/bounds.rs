@@ -37,7 +37,8 @@ impl HullShape {
     fn climbed_aabb(&self, pose: &Pose) -> Aabb {
         let to_local = pose.rotation.inverse();
         let axes = [Vector::X, Vector::Y, Vector::Z].map(|axis| to_local * axis);
-        let reach = |axis: usize, sign: f32| axes[axis].dot(self.support_toward(sign * axes[axis]));
+        let reach =
+            |axis: usize, sign: f32| axes[axis].dot(self.hull().support_toward(sign * axes[axis]));
         let corner = |sign| Vector::new(reach(0, sign), reach(1, sign), reach(2, sign));
         Aabb::new(
             pose.translation + corner(-1.0),

@@ -5,51 +5,49 @@ use parry3d::math::Vector;
 use parry3d::shape::{FeatureId, PackedFeatureId, PolygonalFeature, PolygonalFeatureMap};
 
 use super::HullShape;
+use crate::hull::Hull;
 use crate::support::{FaceId, Polytope, VertexId};
 
 /// A feature answers for directions within one degree of its normals, as in parry.
 const COS_1_DEGREE: f64 = 0.999_847_7;
 const SIN_1_DEGREE: f64 = 0.017_452_4;
 
-impl HullShape {
+impl Hull {
     /// The feature that is extreme in direction `dir`, of length one: a face or an edge if it is
     /// so nearly, else a vertex.
     pub(super) fn feature_toward(&self, dir: DVec3) -> FeatureId {
-        let hull = self.hull();
         let vertex = self.support_vertex(dir);
-        let face = hull.face_at(vertex, dir);
+        let face = self.face_at(vertex, dir);
         let Some(at) = self.place_around(face, vertex) else {
             return FeatureId::Face(face);
         };
-        if hull.face_normal(face).dot(dir) >= COS_1_DEGREE {
+        if self.face_normal(face).dot(dir) >= COS_1_DEGREE {
             return FeatureId::Face(face);
         }
-        let len = hull.face_len(face);
+        let len = self.face_len(face);
         let level = |other: &VertexId| {
-            let edge = hull.vertex(*other) - hull.vertex(vertex);
+            let edge = self.vertex(*other) - self.vertex(vertex);
             edge.dot(dir).abs() <= SIN_1_DEGREE * edge.length()
         };
         [at + 1, at + len - 1]
-            .map(|i| hull.face_vertex(face, i % len))
+            .map(|i| self.face_vertex(face, i % len))
             .into_iter()
             .find(level)
-            .and_then(|other| hull.edge_id(vertex, other))
+            .and_then(|other| self.edge_id(vertex, other))
             .map_or(FeatureId::Vertex(vertex), FeatureId::Edge)
     }
 
     /// Where a vertex stands among the corners of a face; `None` if it lies within the face.
     fn place_around(&self, face: FaceId, vertex: VertexId) -> Option<usize> {
-        let hull = self.hull();
-        (0..hull.face_len(face)).find(|&i| hull.face_vertex(face, i) == vertex)
+        (0..self.face_len(face)).find(|&i| self.face_vertex(face, i) == vertex)
     }
 
     /// The outward unit normal of a feature, that of an edge or a vertex between those of its
     /// faces; `None` if there is no such feature.
     pub(super) fn feature_normal(&self, feature: FeatureId) -> Option<Vector> {
-        let hull = self.hull();
         let normal = match feature {
-            FeatureId::Face(face) if hull.has_face(face) => hull.face_normal(face),
-            FeatureId::Edge(edge) => self.mean_normal(&hull.edge(edge)?)?,
+            FeatureId::Face(face) if self.has_face(face) => self.face_normal(face),
+            FeatureId::Edge(edge) => self.mean_normal(&self.edge(edge)?)?,
             FeatureId::Vertex(vertex) => self.mean_normal(&[vertex])?,
             FeatureId::Face(_) | FeatureId::Unknown => return None,
         };
@@ -58,14 +56,13 @@ impl HullShape {
 
     /// The mean normal of the faces that have all of `corners`.
     fn mean_normal(&self, corners: &[VertexId]) -> Option<DVec3> {
-        let hull = self.hull();
-        (0..hull.face_count() as FaceId)
+        (0..self.face_count() as FaceId)
             .filter(|&face| {
                 corners
                     .iter()
                     .all(|&v| self.place_around(face, v).is_some())
             })
-            .map(|face| hull.face_normal(face))
+            .map(|face| self.face_normal(face))
             .sum::<DVec3>()
             .try_normalize()
     }
@@ -73,9 +70,8 @@ impl HullShape {
     /// Four corners at most of a face, as positions around it: `first`, the farthest from it,
     /// and between these the farthest from the line through them.
     fn far_corners(&self, face: FaceId, first: usize) -> impl Iterator<Item = usize> {
-        let hull = self.hull();
-        let len = hull.face_len(face);
-        let at = |step: usize| hull.vertex(hull.face_vertex(face, (first + step) % len));
+        let len = self.face_len(face);
+        let at = |step: usize| self.vertex(self.face_vertex(face, (first + step) % len));
         let farthest = |steps: std::ops::Range<usize>, distance: &dyn Fn(DVec3) -> f64| {
             steps.max_by(|&i, &j| distance(at(i)).total_cmp(&distance(at(j))))
         };
@@ -95,27 +91,36 @@ impl HullShape {
     }
 }
 
-impl PolygonalFeatureMap for HullShape {
+impl PolygonalFeatureMap for Hull {
     /// The face that looks most in direction `dir` of those at the extreme vertex. Of a face with
     /// more corners than parry has room for, the extreme one and others far from each other: a
     /// coin stands on its whole rim, and not on four neighbouring points of it.
     fn local_support_feature(&self, dir: Vector, out_feature: &mut PolygonalFeature) {
-        let hull = self.hull();
         let vertex = self.support_vertex(dir.as_dvec3());
-        let face = hull.face_at(vertex, dir.as_dvec3());
-        let len = hull.face_len(face);
-        let corner = |i: usize| hull.face_vertex(face, i % len);
+        let face = self.face_at(vertex, dir.as_dvec3());
+        let len = self.face_len(face);
+        let corner = |i: usize| self.face_vertex(face, i % len);
         let first = self.place_around(face, vertex).unwrap_or(0);
         let mut count = 0;
         for (slot, i) in self.far_corners(face, first).enumerate() {
-            let edge = hull.edge_id(corner(i), corner(i + 1));
-            out_feature.vertices[slot] = hull.points()[corner(i) as usize];
+            let edge = self.edge_id(corner(i), corner(i + 1));
+            out_feature.vertices[slot] = self.points()[corner(i) as usize];
             out_feature.vids[slot] = PackedFeatureId::vertex(corner(i));
             out_feature.eids[slot] = edge.map_or(PackedFeatureId::UNKNOWN, PackedFeatureId::edge);
             count = slot + 1;
         }
         out_feature.fid = PackedFeatureId::face(face);
         out_feature.num_vertices = count;
+    }
+
+    fn is_convex_polyhedron(&self) -> bool {
+        true
+    }
+}
+
+impl PolygonalFeatureMap for HullShape {
+    fn local_support_feature(&self, dir: Vector, out_feature: &mut PolygonalFeature) {
+        self.hull().local_support_feature(dir, out_feature);
     }
 
     fn is_convex_polyhedron(&self) -> bool {

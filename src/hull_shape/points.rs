@@ -4,28 +4,37 @@ use glam::DVec3;
 use parry3d::math::{Pose, Vector};
 use parry3d::query::{PointProjection, PointQuery};
 use parry3d::shape::{FeatureId, SupportMap};
+use parry3d::utils::point_cloud_support_point;
 
 use super::HullShape;
 use crate::gjk::{self, Outcome};
+use crate::hull::Hull;
 use crate::pose::RelativePose;
 use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{Cso, FaceId, Polytope, Support, VertexId};
 
-impl HullShape {
+/// Of so many points the scan that parry does, in f32, is quicker than a climb.
+const SCAN_UP_TO: usize = 40;
+
+impl Hull {
     /// The vertex that is extreme in direction `dir`, of any length.
     #[inline]
     pub(super) fn support_vertex(&self, dir: DVec3) -> VertexId {
-        let hull = self.hull();
-        hull.support(dir, hull.start(dir), &mut Cost::default()).1
+        self.support(dir, self.start(dir), &mut Cost::default()).1
     }
 
     /// The position of the vertex that is extreme in direction `dir`.
     #[inline]
     pub(super) fn support_toward(&self, dir: Vector) -> Vector {
-        self.hull().points()[self.support_vertex(dir.as_dvec3()) as usize]
+        if self.points().len() <= SCAN_UP_TO {
+            return point_cloud_support_point(dir, self.points());
+        }
+        self.points()[self.support_vertex(dir.as_dvec3()) as usize]
     }
+}
 
+impl HullShape {
     /// The face whose plane a point is the farthest above, and how far.
     fn nearest_plane(&self, point: DVec3) -> (FaceId, f64) {
         let hull = self.hull();
@@ -54,7 +63,7 @@ impl HullShape {
         match gjk::distance::<Preferred, _, _>(&cso, &[first], f64::INFINITY, cost) {
             Outcome::Near(closest) => (
                 PointProjection::new(false, closest.on_1.as_vec3()),
-                self.feature_toward(closest.normal),
+                self.hull().feature_toward(closest.normal),
             ),
             Outcome::Overlap(_) if solid => (PointProjection::new(true, point), FeatureId::Unknown),
             // Never apart: no distance is farther than infinity.
@@ -99,10 +108,17 @@ impl Support for Point {
     }
 }
 
-impl SupportMap for HullShape {
+impl SupportMap for Hull {
     #[inline]
     fn local_support_point(&self, dir: Vector) -> Vector {
         self.support_toward(dir)
+    }
+}
+
+impl SupportMap for HullShape {
+    #[inline]
+    fn local_support_point(&self, dir: Vector) -> Vector {
+        self.hull().support_toward(dir)
     }
 }
 

@@ -74,6 +74,6 @@ impl Shape for HullShape {
         feature: FeatureId,
         _point: Vector,
     ) -> Option<Vector> {
-        self.feature_normal(feature)
+        self.hull().feature_normal(feature)
     }
 }

@@ -25,7 +25,7 @@ use crate::epa::{self, Depth, EpaScratch, Penetration, Shells};
 use crate::gjk::{self, Closest, Outcome, SeparatingAxis};
 use crate::simplex::Preferred;
 use crate::stats::{Cost, Stage};
-use crate::support::{Cso, CsoVertex, Polytope, VertexId};
+use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
 use crate::tolerance::DEPTH_GAP;
 use feature::{Seeds, Verdict};
 
@@ -105,6 +105,58 @@ pub struct Query<'a, 'c, A, B> {
     pub cost: &'a mut Cost,
 }
 
+impl<A: Support, B: Support> Query<'_, '_, A, B> {
+    /// The stages that need no faces, for shapes that have none: whether the balls are too far apart,
+    /// or the axis that is remembered, or else the line of centres, separates. `None` proves nothing.
+    pub fn prove_apart(&mut self, memory: &Memory) -> Option<(SeparatingAxis, Stage)> {
+        if let Some(apart) = self.test_balls(memory) {
+            return Some((apart, Stage::Balls));
+        }
+        let (axis, start) = match *memory {
+            Memory::Axis(axis, ids) => (axis, self.valid_start(ids)),
+            _ => {
+                let axis = self.cso.towards_origin();
+                (axis, self.cso.start(axis))
+            }
+        };
+        let apart =
+            gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost).or_else(|vertex| {
+                let tilted = tilted(axis, &vertex);
+                gjk::test_axis(self.cso, tilted, vertex.ids, self.max_distance, self.cost)
+            });
+        Some((apart.ok()?, Stage::Axis))
+    }
+
+    /// Whether the balls around the shapes are too far apart already: no vertex is looked at. What
+    /// was remembered of the vertices stays.
+    #[inline]
+    fn test_balls(&self, memory: &Memory) -> Option<SeparatingAxis> {
+        let (axis, separation) = self.cso.test_balls(self.max_distance)?;
+        Some(SeparatingAxis {
+            axis,
+            separation,
+            ids: match *memory {
+                Memory::Axis(_, ids) => ids,
+                _ => self.cso.start(axis),
+            },
+        })
+    }
+
+    fn valid_start(&self, ids: [VertexId; 2]) -> [VertexId; 2] {
+        [
+            self.cso.shape_1.valid_start(ids[0]),
+            self.cso.shape_2.valid_start(ids[1]),
+        ]
+    }
+}
+
+/// An axis tilted away from where the shapes come too near along it.
+#[inline]
+fn tilted(axis: DVec3, too_near: &CsoVertex) -> DVec3 {
+    let sideways = too_near.w - axis * axis.dot(too_near.w);
+    (axis - sideways.normalize_or_zero() * TILT).normalize()
+}
+
 impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     /// Answers from `memory` where that is possible, cold otherwise. `None` only if the shapes
     /// have no volume between them or are not finite.
@@ -124,30 +176,8 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
     }
 
-    /// Whether the balls around the shapes are too far apart already: no vertex is looked at. What
-    /// was remembered of the vertices stays.
-    #[inline]
-    fn test_balls(&self, memory: &Memory) -> Option<SeparatingAxis> {
-        let (axis, separation) = self.cso.test_balls(self.max_distance)?;
-        Some(SeparatingAxis {
-            axis,
-            separation,
-            ids: match *memory {
-                Memory::Axis(_, ids) => ids,
-                _ => self.cso.start(axis),
-            },
-        })
-    }
-
     fn is_far_sighted(&self) -> bool {
         self.max_distance > FAR * self.cso.size()
-    }
-
-    fn valid_start(&self, ids: [VertexId; 2]) -> [VertexId; 2] {
-        [
-            self.cso.shape_1.valid_start(ids[0]),
-            self.cso.shape_2.valid_start(ids[1]),
-        ]
     }
 
     /// Tests an axis. If it does not separate, then often one that is tilted away from where the
@@ -163,8 +193,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             Err(vertex) if self.is_far_sighted() => return self.run_gjk(&[vertex], gjk),
             Err(vertex) => vertex,
         };
-        let sideways = vertex.w - axis * axis.dot(vertex.w);
-        let tilted = (axis - sideways.normalize_or_zero() * TILT).normalize();
+        let tilted = tilted(axis, &vertex);
         match gjk::test_axis(self.cso, tilted, vertex.ids, self.max_distance, self.cost) {
             Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
             Err(second) => match walk::around(self.cso, &second, tilted) {

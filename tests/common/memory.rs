@@ -18,7 +18,7 @@ impl Memory {
     /// The only manifold of a pair of convex shapes, after another frame.
     pub fn update(
         &mut self,
-        dispatcher: &IsaGjkDispatcher,
+        dispatcher: &impl PersistentQueryDispatcher<(), ()>,
         pose: &Pose,
         shapes: [&SharedShape; 2],
         prediction: Real,
