@@ -123,12 +123,13 @@ fn scene_queries() {
             ("cuboid", SharedShape::cuboid(0.5, 0.6, 0.7)),
             ("ball", SharedShape::ball(0.5)),
             ("half-space", SharedShape::halfspace(Vector::Y)),
+            ("cylinder", SharedShape::cylinder(0.5, 0.4)),
         ];
         let names = others.each_ref().map(|other| other.0).join(" | ");
         println!(
             "\n### Scene queries of a hull of {vertices} vertices: ns, default → ours, ratio\n"
         );
-        println!("| query | {names} |\n|---|---|---|---|---|---|");
+        println!("| query | {names} |\n|---|---|---|---|---|---|---|");
         let ours = IsaGjkDispatcher::default();
         for (query, ask) in QUERIES {
             let row = others.each_ref().map(|(_, other)| {

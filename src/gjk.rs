@@ -13,7 +13,7 @@ use glam::DVec3;
 use crate::simplex::{DistanceSubalgorithm, Nearest};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Support, VertexId};
-use crate::tolerance::{GJK_ABSOLUTE_GAP, GJK_RELATIVE_GAP, TOUCHING};
+use crate::tolerance::{GJK_ABSOLUTE_GAP, GJK_CURVED_GAP, GJK_RELATIVE_GAP, TOUCHING};
 
 /// Convergence is finite, and even the adversarial families need far fewer iterations; the
 /// bound only guards against a stall that no other test sees.
@@ -168,6 +168,13 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
     cost: &mut Cost,
 ) -> Outcome {
     let size = cso.size();
+    let is_curved = A::CURVED || B::CURVED;
+    let absolute_gap = size
+        * if is_curved {
+            GJK_CURVED_GAP
+        } else {
+            GJK_ABSOLUTE_GAP
+        };
     let mut simplex = Simplex::default();
     let mut ids = [0; 2];
     for &vertex in start.iter().take(3) {
@@ -194,7 +201,7 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
             });
         }
         let gap = norm - lower_bound;
-        let converged = gap <= GJK_RELATIVE_GAP * norm || gap <= GJK_ABSOLUTE_GAP * size;
+        let converged = gap <= GJK_RELATIVE_GAP * norm || gap <= absolute_gap;
         if converged || simplex.contains(&w) {
             return Outcome::Near(closest(&simplex, &nearest, lower_bound));
         }
