@@ -19,8 +19,8 @@
 //! - **Saving and loading.** The shape shows itself to parry as the convex polyhedron that it
 //!   holds (`as_typed_shape`): that is what is serialized. A loaded world has plain hulls in
 //!   the place of `HullShape`s and works without this crate. With our dispatcher it goes on as
-//!   before, but for the rounding of bounding boxes and for pairs that parry answers (with
-//!   cylinders and cones), whose contact points may differ as said above.
+//!   before, but for the rounding of bounding boxes and for pairs whose contacts parry
+//!   makes (with custom shapes), which may differ as said above.
 //!   To get `HullShape`s back, see [`PreparedShapes`].
 //! - **Debug rendering** draws the polyhedron's edges, for the same reason.
 //! - **Continuous collision detection** sweeps the polyhedron's points, as it does those of a
