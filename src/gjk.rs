@@ -13,7 +13,7 @@ use glam::DVec3;
 use crate::simplex::{DistanceSubalgorithm, Nearest};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Support, VertexId};
-use crate::tolerance::{GJK_ABSOLUTE_GAP, GJK_CURVED_GAP, GJK_RELATIVE_GAP, TOUCHING};
+use crate::tolerance::{GJK_ABSOLUTE_GAP, GJK_RELATIVE_GAP, TOUCHING};
 
 /// Convergence is finite, and even the adversarial families need far fewer iterations; the
 /// bound only guards against a stall that no other test sees.
@@ -167,14 +167,21 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
     max_distance: f64,
     cost: &mut Cost,
 ) -> Outcome {
+    distance_within::<S, A, B>(cso, start, max_distance, GJK_ABSOLUTE_GAP, cost)
+}
+
+/// As [`distance`], which ends as soon as its bounds differ by less than `gap`, relative to the pair's
+/// size.
+#[inline(always)]
+pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
+    cso: &Cso<'_, A, B>,
+    start: &[CsoVertex],
+    max_distance: f64,
+    gap: f64,
+    cost: &mut Cost,
+) -> Outcome {
     let size = cso.size();
-    let is_curved = A::CURVED || B::CURVED;
-    let absolute_gap = size
-        * if is_curved {
-            GJK_CURVED_GAP
-        } else {
-            GJK_ABSOLUTE_GAP
-        };
+    let absolute_gap = gap * size;
     let mut simplex = Simplex::default();
     let mut ids = [0; 2];
     for &vertex in start.iter().take(3) {

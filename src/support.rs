@@ -12,9 +12,6 @@ pub type VertexId = u32;
 
 /// A convex shape as its support mapping, in its own frame.
 pub trait Support {
-    /// Whether its surface is curved, so that a search need not end at vertices.
-    const CURVED: bool = false;
-
     /// A point that is extreme in direction `dir` (any length), and its vertex.
     ///
     /// `start` is where to begin the search, usually the answer of a similar query. It must be

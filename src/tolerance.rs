@@ -52,9 +52,8 @@ pub const GJK_RELATIVE_GAP: f64 = 1e-9;
 /// ...or by less than this share of the pair's size: the rounding of f64 sums of coordinates.
 pub const GJK_ABSOLUTE_GAP: f64 = 1e-12;
 
-/// ...or, where one of the shapes is curved, by less than this share of the pair's size: a tenth of the
-/// promised accuracy. A search on a polytope ends at its vertices, one on a curved surface would halve
-/// the gap for ever.
+/// ...or, in scene queries of cylinders and cones, by less than this share of it: a tenth of the promised
+/// accuracy. A search on a polytope ends at its vertices; one on a curved surface goes on and on.
 pub const GJK_CURVED_GAP: f64 = 1e-6;
 
 /// A distance below this share of the pair's size has no reliable direction; the penetration

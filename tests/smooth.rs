@@ -16,7 +16,6 @@ use isa_gjk::ray_cast::{RayCast, ray_cast};
 use isa_gjk::simplex::Voronoi;
 use isa_gjk::stats::Cost;
 use isa_gjk::support::{Cso, Support};
-use isa_gjk::tolerance::GJK_CURVED_GAP;
 use parry3d::math::Pose;
 
 fn pose(translation: DVec3, rotation: DQuat) -> RelativePose {
@@ -111,9 +110,7 @@ fn closest<A: Support, B: Support>(a: &A, b: &B, pose: &RelativePose) -> Closest
     match gjk::distance::<Voronoi, _, _>(&cso, &[start], f64::INFINITY, &mut cost) {
         Outcome::Near(near) => {
             let gap = near.distance - near.lower_bound;
-            let is_curved = A::CURVED || B::CURVED;
-            let allowed = if is_curved { GJK_CURVED_GAP } else { 1.0e-8 };
-            assert!(gap <= allowed * cso.size(), "uncertain by {gap:e}");
+            assert!(gap <= 1.0e-8 * cso.size(), "uncertain by {gap:e}");
             assert!(cost.iterations < 100, "{} iterations", cost.iterations);
             near
         }

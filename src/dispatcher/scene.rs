@@ -16,6 +16,7 @@ use crate::query::{Answer, Memory, Proximity, Query};
 use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{Polytope, Support};
+use crate::tolerance::{GJK_ABSOLUTE_GAP, GJK_CURVED_GAP};
 
 /// Whether two shapes touch or overlap. `None`, here and below: not a pair for us.
 pub(super) fn intersect(pos12: &Pose, shape_1: &dyn Shape, shape_2: &dyn Shape) -> Option<bool> {
@@ -153,8 +154,8 @@ struct SeparationQuery<'a> {
 }
 
 impl SeparationQuery<'_> {
-    /// Of a hull and any convex shape.
-    fn separation<B: Support>(&self, pair: &Pair<'_, B>) -> Option<Separation> {
+    /// Of a hull and any convex shape; `gap` is GJK's, relative to their size.
+    fn separation<B: Support>(&self, pair: &Pair<'_, B>, gap: f64) -> Option<Separation> {
         let pose = valid_pose(pair, self.pos12)?;
         let cso = pair.cso(&pose);
         let cost = &mut Cost::default();
@@ -167,7 +168,8 @@ impl SeparationQuery<'_> {
             Ok(_) => return Some(Separation::Beyond),
             Err(vertex) => vertex,
         };
-        let outcome = gjk::distance::<Preferred, _, _>(&cso, &[vertex], max_distance, cost);
+        let outcome =
+            gjk::distance_within::<Preferred, _, _>(&cso, &[vertex], max_distance, gap, cost);
         Some(match outcome {
             Outcome::Apart(_) => Separation::Beyond,
             Outcome::Overlap(_) => Separation::None,
@@ -187,7 +189,7 @@ impl PairVisitor for SeparationQuery<'_> {
     const CURVED: bool = true;
 
     fn visit<B: Polytope>(self, pair: &Pair<'_, B>, _: &mut Scratch) -> Option<Self::Answer> {
-        self.separation(pair)
+        self.separation(pair, GJK_ABSOLUTE_GAP)
     }
 
     fn visit_curved<B: Support>(
@@ -196,7 +198,7 @@ impl PairVisitor for SeparationQuery<'_> {
         _: &dyn PolygonalFeatureMap,
         _: &mut Scratch,
     ) -> Option<Self::Answer> {
-        self.separation(pair)
+        self.separation(pair, GJK_CURVED_GAP)
     }
 
     fn visit_half_space(self, pair: &Pair<'_, HalfSpace>, _: &mut Scratch) -> Option<Self::Answer> {
@@ -262,7 +264,7 @@ impl PairVisitor for ContactQuery<'_> {
             pos12: self.pos12,
             max_distance: self.prediction,
         };
-        match query.separation(pair)? {
+        match query.separation(pair, GJK_CURVED_GAP)? {
             Separation::None => None,
             Separation::Near(near) => Some(Some(near.contact())),
             Separation::Beyond => Some(None),

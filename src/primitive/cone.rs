@@ -31,8 +31,6 @@ impl Cone {
 }
 
 impl Support for Cone {
-    const CURVED: bool = true;
-
     #[inline]
     fn support(&self, dir: DVec3, _: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
         cost.supports += 1;

@@ -24,8 +24,6 @@ impl Cylinder {
 }
 
 impl Support for Cylinder {
-    const CURVED: bool = true;
-
     #[inline]
     fn support(&self, dir: DVec3, _: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
         cost.supports += 1;
