@@ -114,6 +114,7 @@ pub(super) fn keep_one<M: Default + Clone, C: Default + Copy>(
     }
     *workspace = (!manifolds.is_empty()).then(empty_workspace);
     manifolds.clear();
+    manifolds.reserve_exact(1);
     manifolds.push(ContactManifold::with_data(0, 0, M::default()));
 }
 
