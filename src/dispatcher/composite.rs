@@ -114,6 +114,8 @@ pub(super) fn keep_one<M: Default + Clone, C: Default + Copy>(
     }
     *workspace = (!manifolds.is_empty()).then(empty_workspace);
     manifolds.clear();
+    // A first push would make room for four, and rapier goes through all pairs in every frame: what
+    // lies densely is waited for less.
     manifolds.reserve_exact(1);
     manifolds.push(ContactManifold::with_data(0, 0, M::default()));
 }
