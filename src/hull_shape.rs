@@ -35,7 +35,8 @@
 //!
 //! # Memory
 //! The polyhedron costs about 250 bytes per vertex and the prepared hull about 130
-//! ([`Hull::heap_bytes`]). A plain collider costs the same where our dispatcher answers.
+//! ([`Hull::heap_bytes`]). A plain collider costs the same where our dispatcher answers, and 12 bytes
+//! per vertex for comparison, in the order of its polyhedron.
 
 mod bounds;
 mod features;

@@ -6,7 +6,8 @@ use super::climb::{self, Slope};
 use super::cloud;
 use super::faces::{Faces, area_vector, longest_side};
 use super::graph::EdgeGraph;
-use super::scan::Scan;
+use super::order;
+use super::scan::{self, Scan};
 use super::start::StartTable;
 use super::surface::{Surface, next};
 use super::{Hull, HullError, Search};
@@ -20,8 +21,8 @@ const MAX_VERTICES: usize = 32_768;
 impl Hull {
     /// The convex hull of a point cloud, by parry's hull builder.
     ///
-    /// Points inside the hull are dropped and equal points are one vertex, so that vertex ids are
-    /// not indices into `points`.
+    /// Vertex ids are indices into [`points`](Self::points), not into the argument: points inside
+    /// the hull are dropped, equal points are one vertex, and the order is another.
     ///
     /// # Errors
     /// Names what is wrong with the points, see [`HullError`].
@@ -35,7 +36,17 @@ impl Hull {
     /// # Ok::<(), isa_gjk::HullError>(())
     /// ```
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
-        cloud::surround(points, Self::from_triangles)
+        cloud::surround(points, Self::in_order)
+    }
+
+    /// As [`from_triangles`](Self::from_triangles), with the vertices in the order in which they are
+    /// quickest to climb over.
+    pub(super) fn in_order(points: Vec<Vec3>, triangles: &[[u32; 3]]) -> Result<Self, HullError> {
+        if points.len() <= scan::LARGEST {
+            return Self::from_triangles(points, triangles);
+        }
+        let (points, triangles) = order::along_curve(&points, triangles);
+        Self::from_triangles(points, &triangles)
     }
 
     /// From the triangulated surface of a convex polytope, counter-clockwise from outside.

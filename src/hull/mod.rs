@@ -8,6 +8,7 @@ mod cloud;
 mod error;
 mod faces;
 mod graph;
+mod order;
 mod scan;
 mod start;
 mod surface;

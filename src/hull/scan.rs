@@ -15,7 +15,7 @@ use crate::support::VertexId;
 /// Up to so many vertices, as many as a mask has bits, a scan is quicker than a cold climb, with 64
 /// by a third, and no slower than a warm one. With 100 a warm climb is quicker by 2 %, and GJK's
 /// climbs from iteration to iteration are.
-const LARGEST: usize = 64;
+pub(super) const LARGEST: usize = 64;
 
 /// How far two heights in f32 may be in the wrong order, for points in the unit ball and a direction
 /// whose largest coordinate is 1: coordinates, direction, products and two sums are rounded, each by

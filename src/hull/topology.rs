@@ -12,15 +12,17 @@ use parry3d::shape::ConvexPolyhedron;
 
 use super::{Hull, HullError};
 
-/// The hull of a polyhedron, with its vertex ids; with new ones where its surface is not a
-/// convex triangulation of all of its points.
+/// The hull of a polyhedron; that of its points where its surface is not a convex triangulation of
+/// them all.
+///
+/// Vertex ids are indices into [`Hull::points`], which are not in the order of the polyhedron's.
 impl TryFrom<&ConvexPolyhedron> for Hull {
     type Error = HullError;
 
     fn try_from(polyhedron: &ConvexPolyhedron) -> Result<Self, HullError> {
         let points = polyhedron.points();
         triangles(polyhedron)
-            .and_then(|triangles| Self::from_triangles(points.to_vec(), &triangles).ok())
+            .and_then(|triangles| Self::in_order(points.to_vec(), &triangles).ok())
             .map_or_else(|| Self::from_points(points), Ok)
     }
 }
