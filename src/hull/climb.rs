@@ -68,6 +68,26 @@ pub(super) fn extreme_vertex(
     }
 }
 
+/// As [`extreme_vertex`], in many directions. Their climbs take the first step together: it is the one
+/// from memory that is in no cache, and so the processor waits for all of it at once.
+#[inline]
+pub(super) fn extreme_vertices<const N: usize>(
+    slope: Slope<'_>,
+    dirs: [DVec3; N],
+    starts: [VertexId; N],
+) -> [VertexId; N] {
+    let mut vertices = starts;
+    for (vertex, &dir) in vertices.iter_mut().zip(&dirs) {
+        let (best, height) = slope.best_neighbor(dir, *vertex);
+        let is_better = height > slope.height(dir, *vertex);
+        *vertex = if is_better { best } else { *vertex };
+    }
+    for (vertex, &dir) in vertices.iter_mut().zip(&dirs) {
+        *vertex = extreme_vertex(slope, dir, *vertex, &mut Cost::default());
+    }
+    vertices
+}
+
 impl Slope<'_> {
     #[inline]
     fn height(&self, dir: DVec3, vertex: VertexId) -> f64 {
@@ -94,7 +114,7 @@ impl Slope<'_> {
         let to = star.to();
         let (fours, _) = to.as_chunks::<LANES>();
         for (i, four) in fours.iter().enumerate() {
-            let corners = four.map(|w| self.points[usize::from(w)]);
+            let corners = four.map(|w| &self.points[usize::from(w)]);
             highest.look_at(number * fours.len() + i, coordinates(corners));
         }
     }

@@ -75,6 +75,27 @@ impl Hull {
         size_of_val(&*self.points) + search + self.graph.heap_bytes() + self.faces.heap_bytes()
     }
 
+    /// The extreme vertices in many directions. Their climbs take the first step together: it is the
+    /// one from memory that is in no cache, and so the processor waits for all of it at once.
+    pub(crate) fn extreme_vertices<const N: usize>(&self, dirs: [DVec3; N]) -> [VertexId; N] {
+        match &self.search {
+            Search::Scan(scan) => dirs.map(|dir| scan.highest(&self.points, dir, 0)),
+            Search::Climb(start) => {
+                let starts = dirs.map(|dir| start.lookup(dir));
+                climb::extreme_vertices(self.slope(), dirs, starts)
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn slope(&self) -> Slope<'_> {
+        Slope {
+            points: &self.points,
+            graph: &self.graph,
+            radius: self.radius,
+        }
+    }
+
     /// The extreme vertex in a direction. The coordinates one by one come in registers: a vector
     /// that was written to memory by coordinates and is read in pairs is waited for.
     #[inline(never)]
@@ -82,14 +103,7 @@ impl Hull {
         let dir = DVec3::new(x, y, z);
         match &self.search {
             Search::Scan(scan) => scan.highest(&self.points, dir, start),
-            Search::Climb(_) => {
-                let slope = Slope {
-                    points: &self.points,
-                    graph: &self.graph,
-                    radius: self.radius,
-                };
-                climb::extreme_vertex(slope, dir, start, cost)
-            }
+            Search::Climb(_) => climb::extreme_vertex(self.slope(), dir, start, cost),
         }
     }
 }

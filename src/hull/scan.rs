@@ -41,7 +41,7 @@ impl Scan {
         let place = |p: &Vec3| ((p.as_dvec3() - center) / radius).as_vec3();
         let fours = points.chunks(LANES).map(|chunk| {
             let lane = |i| place(chunk.get(i).unwrap_or(&chunk[0]));
-            coordinates(array::from_fn(lane)).map(f32x4::new)
+            coordinates(array::from_fn::<_, LANES, _>(lane).each_ref()).map(f32x4::new)
         });
         Some(Self {
             fours: fours.collect(),

@@ -34,7 +34,8 @@ impl Highest {
     /// Looks at the four points, coordinate by coordinate, that have this number.
     #[inline(always)]
     pub fn look_at(&mut self, number: usize, coordinates: [[f32; LANES]; 3]) {
-        let [x, y, z] = coordinates.map(|lanes| f64x4::new(lanes.map(f64::from)));
+        let [x, y, z] = coordinates;
+        let [x, y, z] = [widened(x), widened(y), widened(z)];
         let heights = x * self.dir[0] + y * self.dir[1] + z * self.dir[2];
         let higher = heights.simd_gt(self.heights);
         let places = u64x4::splat((number * LANES) as u64) + u64x4::new([0, 1, 2, 3]);
@@ -62,10 +63,15 @@ impl Highest {
 
 /// Four points, coordinate by coordinate.
 #[inline(always)]
-pub(super) fn coordinates(points: [Vec3; LANES]) -> [[f32; LANES]; 3] {
+pub(super) fn coordinates([a, b, c, d]: [&Vec3; LANES]) -> [[f32; LANES]; 3] {
     [
-        points.map(|p| p.x),
-        points.map(|p| p.y),
-        points.map(|p| p.z),
+        [a.x, b.x, c.x, d.x],
+        [a.y, b.y, c.y, d.y],
+        [a.z, b.z, c.z, d.z],
     ]
+}
+
+#[inline(always)]
+fn widened([a, b, c, d]: [f32; LANES]) -> f64x4 {
+    f64x4::new([a.into(), b.into(), c.into(), d.into()])
 }

@@ -6,8 +6,8 @@ use parry3d::math::{Pose, Vector};
 
 use super::HullShape;
 
-/// A scan of so many points takes as long as six climbs.
-const SCAN_UP_TO: usize = 200;
+/// A scan of so many points takes as long as six climbs, and its memory is no surprise.
+const SCAN_UP_TO: usize = 300;
 
 impl HullShape {
     /// The box around the hull at a pose, its axes those of the world.
@@ -37,12 +37,13 @@ impl HullShape {
     fn climbed_aabb(&self, pose: &Pose) -> Aabb {
         let to_local = pose.rotation.inverse();
         let axes = [Vector::X, Vector::Y, Vector::Z].map(|axis| to_local * axis);
-        let reach =
-            |axis: usize, sign: f32| axes[axis].dot(self.hull().support_toward(sign * axes[axis]));
-        let corner = |sign| Vector::new(reach(0, sign), reach(1, sign), reach(2, sign));
+        let [x, y, z] = axes.map(|axis| axis.as_dvec3());
+        let hull = self.hull();
+        let ends = hull.extreme_vertices([-x, -y, -z, x, y, z]);
+        let reach = |i: usize| axes[i % 3].dot(hull.points()[ends[i] as usize]);
         Aabb::new(
-            pose.translation + corner(-1.0),
-            pose.translation + corner(1.0),
+            pose.translation + Vector::new(reach(0), reach(1), reach(2)),
+            pose.translation + Vector::new(reach(3), reach(4), reach(5)),
         )
     }
 }
