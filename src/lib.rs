@@ -102,6 +102,7 @@
 
 #[cfg(feature = "bevy")]
 pub mod bevy;
+mod both;
 pub mod dispatcher;
 pub mod epa;
 pub mod gjk;

@@ -59,6 +59,7 @@ impl RelativePose {
     }
 
     /// The pose of shape 1 in frame 2.
+    #[inline]
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.transpose();
         Self {

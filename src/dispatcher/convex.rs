@@ -10,6 +10,7 @@ use super::constraints::Constraints;
 use super::pair::{HalfSpace, Pair, PairVisitor, Scratch};
 use super::points::write_points;
 use super::{cache, half_space};
+use crate::both::both;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch};
 use crate::pose::RelativePose;
@@ -123,11 +124,13 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
 }
 
 /// Where the manifold is: mostly where it was in the frame before.
+#[inline]
 fn key_of<T>(manifold: &T) -> u64 {
     (&raw const *manifold).addr() as u64
 }
 
 /// The contact normal as both shapes see it, outwards.
+#[inline]
 fn normals(near: &Proximity, pose: &RelativePose) -> [DVec3; 2] {
     [near.normal, -pose.direction_to_2(near.normal)]
 }
@@ -170,8 +173,9 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         scratch: &mut ClipScratch,
     ) {
         let swapped = pair.swapped;
-        let [mut n1, mut n2] =
-            cache::ordered(normals(near, cso.pose), swapped).map(|n| n.as_vec3());
+        let [mut n1, mut n2] = both(cache::ordered(normals(near, cso.pose), swapped), |n| {
+            n.as_vec3()
+        });
         let unconstrained = n1;
         let [c1, c2] = self.constraints;
         let is_possible = c1

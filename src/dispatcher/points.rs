@@ -4,7 +4,8 @@ use parry3d::math::Real;
 use parry3d::query::{ContactManifold, TrackedContact};
 
 use super::cache;
-use crate::manifold::{Contacts, MAX_POINTS};
+use crate::both::both;
+use crate::manifold::{ContactPoint, Contacts, MAX_POINTS};
 use crate::pose::RelativePose;
 
 /// Replaces the manifold's points, and hands the data (the solver's impulses) of the old ones on.
@@ -19,15 +20,15 @@ pub(super) fn write_points<M, C: Default + Copy>(
     swapped: bool,
 ) {
     let normals = cache::ordered([manifold.local_n1, manifold.local_n2], swapped);
-    let [n1, n2] = normals.map(|n| n.as_dvec3());
+    let [n1, n2] = both(normals, |n| n.as_dvec3());
     let count = contacts.as_slice().len();
-    let places = contacts.padded().each_ref().map(|contact| {
+    let place = |contact: &ContactPoint| {
         let points = [
             contact.on_1 + n1 * borders[0],
             pose.point_to_2(contact.on_2) + n2 * borders[1],
         ];
-        let [local_p1, local_p2] = cache::ordered(points.map(|p| p.as_vec3()), swapped);
-        let [fid1, fid2] = cache::ordered(contact.features.map(cache::pack), swapped);
+        let [local_p1, local_p2] = cache::ordered(both(points, |p| p.as_vec3()), swapped);
+        let [fid1, fid2] = cache::ordered(both(contact.features, cache::pack), swapped);
         TrackedContact {
             local_p1,
             local_p2,
@@ -36,7 +37,9 @@ pub(super) fn write_points<M, C: Default + Copy>(
             fid2,
             data: (),
         }
-    });
+    };
+    let [a, b, c, d] = contacts.padded();
+    let places = [place(a), place(b), place(c), place(d)];
     let tracked = &mut manifold.points;
     let old = Identities::of(tracked);
     let new = Identities::of(&places[..count]);

@@ -32,6 +32,7 @@ pub(super) struct ClipVertex {
 }
 
 impl ClipVertex {
+    #[inline]
     pub fn new(at: DVec2, tag: Tag) -> Self {
         Self {
             at,
@@ -100,6 +101,7 @@ pub(super) fn intersect(polygons: &mut Polygons, slack: f64) -> &mut [ClipVertex
 }
 
 impl Polygons {
+    #[inline]
     fn make_room(&mut self) {
         let (sides, count) = (self.window.len(), self.subject.len());
         self.rows.clear();
@@ -147,6 +149,7 @@ struct Side {
 }
 
 impl Side {
+    #[inline]
     fn new(index: u16, from: DVec2, to: DVec2, slack: f64) -> Self {
         let along = to - from;
         // Heights are multiplied by the length; the sum of coordinates is not shorter.
@@ -162,6 +165,7 @@ impl Side {
 
     /// The place of a point along the side, from 0 to the length squared, and its height over it,
     /// positive inside.
+    #[inline]
     fn place(&self, p: DVec2) -> DVec2 {
         let from = p - self.from;
         DVec2::new(self.along.dot(from), self.along.perp_dot(from))
@@ -169,6 +173,7 @@ impl Side {
 
     /// Strikes the subject's corners below this side from those inside, and adds what the side has
     /// of the intersection's corners.
+    #[inline]
     fn cut(&self, subject: &[DVec2], rows: &mut [Row], found: &mut Appender<'_>) {
         for row in &mut *rows {
             // As `place` computes them.

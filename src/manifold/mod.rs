@@ -61,16 +61,19 @@ pub struct Contacts {
 
 impl Contacts {
     /// The contacts; the witness of the query comes first.
+    #[inline]
     pub fn as_slice(&self) -> &[ContactPoint] {
         &self.points[..self.len]
     }
 
     /// As many contacts as there can be: those, and others that mean nothing.
+    #[inline]
     pub(crate) fn padded(&self) -> &[ContactPoint; MAX_POINTS] {
         &self.points
     }
 
     /// The witness alone.
+    #[inline]
     pub fn witness(proximity: &Proximity) -> Self {
         let point = ContactPoint {
             on_1: proximity.on_1,
@@ -84,6 +87,7 @@ impl Contacts {
         }
     }
 
+    #[inline]
     fn push(&mut self, point: ContactPoint) {
         self.points[self.len] = point;
         self.len += 1;

@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 
 use super::ContactPoint;
 use super::clip::{self, ClipVertex, Polygons, Tag};
+use crate::both::both;
 use crate::pose::RelativePose;
 use crate::query::{Feature, Proximity};
 use crate::support::{Cso, FaceId, Polytope};
@@ -20,6 +21,7 @@ pub(super) struct FacePlane {
 }
 
 impl FacePlane {
+    #[inline]
     fn height(&self, at: DVec2) -> f64 {
         self.base + self.slope.dot(at)
     }
@@ -38,6 +40,7 @@ struct Surface<'s> {
 
 impl Surface<'_> {
     /// The plane that is the surface there: of planes around a convex shape, the innermost.
+    #[inline]
     fn plane_at(&self, at: DVec2) -> (f64, FaceId) {
         let mut height = self.plane.height(at);
         let mut face = self.plane.face;
@@ -61,14 +64,16 @@ struct Frame {
 
 impl Frame {
     /// The same plane in the frame of shape 2.
+    #[inline]
     fn seen_from_2(&self, pose: &RelativePose) -> Self {
         Self {
             origin: pose.point_to_2(self.origin),
             normal: pose.direction_to_2(self.normal),
-            axes: self.axes.map(|axis| pose.direction_to_2(axis)),
+            axes: both(self.axes, |axis| pose.direction_to_2(axis)),
         }
     }
 
+    #[inline]
     fn flatten(&self, p: DVec3) -> DVec2 {
         let p = p - self.origin;
         DVec2::new(p.dot(self.axes[0]), p.dot(self.axes[1]))
@@ -76,6 +81,7 @@ impl Frame {
 
     /// A face whose outward normal is `outward` in this frame's space and whose plane is `offset`
     /// beyond the origin; none if it is seen from behind or edge-on.
+    #[inline]
     fn plane(&self, face: FaceId, outward: DVec3, offset: f64, sign: f64) -> Option<FacePlane> {
         let along = outward.dot(self.normal);
         (along * sign > EDGE_ON).then(|| FacePlane {
@@ -127,6 +133,7 @@ impl<'s> Patch<'s> {
     }
 
     /// The corners of the intersection of both polygons.
+    #[inline]
     pub fn clip<'p, A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
@@ -145,6 +152,7 @@ impl<'s> Patch<'s> {
     }
 
     /// Fills in the distances of `corners`, none of which is below `least`.
+    #[inline]
     pub fn measure(&self, corners: &mut [ClipVertex], least: f64) {
         for corner in corners {
             let [h1, h2] = self.heights(corner.at);
@@ -152,6 +160,7 @@ impl<'s> Patch<'s> {
         }
     }
 
+    #[inline]
     pub fn contact<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
@@ -173,6 +182,7 @@ impl<'s> Patch<'s> {
     }
 
     /// What meets at a corner of the intersection.
+    #[inline]
     pub fn features<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
@@ -192,11 +202,13 @@ impl<'s> Patch<'s> {
         }
     }
 
+    #[inline]
     fn polygons(&self) -> [FaceId; 2] {
         [self.surfaces[0].polygon, self.surfaces[1].polygon]
     }
 
     /// The heights of both surfaces at a place in the contact plane.
+    #[inline]
     fn heights(&self, at: DVec2) -> [f64; 2] {
         [
             self.surfaces[0].plane_at(at).0,
@@ -208,6 +220,7 @@ impl<'s> Patch<'s> {
 /// The plane of a face of shape 2, in frame 1: its outward normal, and its height over the origin of
 /// the contact plane. A segment has that of its planes which leans least against the contact
 /// normal; a point has none.
+#[inline]
 fn plane_of_2<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     face: FaceId,
@@ -217,8 +230,11 @@ fn plane_of_2<A: Polytope, B: Polytope>(
     match shape.face_len(face) {
         1 => None,
         2 => {
-            let ends = [0, 1].map(|i| shape.vertex(shape.face_vertex(face, i)));
-            let [from, to] = ends.map(|end| cso.pose.point_to_1(end));
+            let end = |i| {
+                cso.pose
+                    .point_to_1(shape.vertex(shape.face_vertex(face, i)))
+            };
+            let [from, to] = both([0, 1], end);
             let along = (to - from).try_normalize()?;
             let outward = (along * along.dot(frame.normal) - frame.normal).try_normalize()?;
             Some((outward, outward.dot(from - frame.origin)))
@@ -232,6 +248,7 @@ fn plane_of_2<A: Polytope, B: Polytope>(
 }
 
 /// The surface around `face`; none if the face is seen edge-on.
+#[inline]
 fn surface<'s>(
     shape: &impl Polytope,
     face: FaceId,
@@ -257,6 +274,7 @@ fn surface<'s>(
 
 /// The face that is in contact: the feature itself, or that next to it which faces the other
 /// shape most.
+#[inline]
 pub(super) fn facing(shape: &impl Polytope, feature: Feature, outward: DVec3) -> FaceId {
     match feature {
         Feature::Face(face) => face,
@@ -266,6 +284,7 @@ pub(super) fn facing(shape: &impl Polytope, feature: Feature, outward: DVec3) ->
 }
 
 /// The `i`-th side of a polygon: an edge, or its first corner where it cuts across faces.
+#[inline]
 fn edge_of(shape: &impl Polytope, polygon: FaceId, i: usize) -> Feature {
     match shape.face_edge(polygon, i) {
         Some(edge) => Feature::Edge(edge),

@@ -6,6 +6,7 @@ use super::MAX_POINTS;
 use super::clip::ClipVertex;
 
 /// The corners up to a distance, and those beyond it, the nearest of these first.
+#[inline]
 pub(super) fn split(
     corners: &mut [ClipVertex],
     max_distance: f64,
@@ -26,6 +27,7 @@ pub(super) fn keep(
 }
 
 /// Brings the wanted corners to the front, in their order, and counts them.
+#[inline]
 fn partition(corners: &mut [ClipVertex], wanted: impl Fn(&ClipVertex) -> bool) -> usize {
     let mut count = 0;
     for i in 0..corners.len() {
@@ -37,6 +39,7 @@ fn partition(corners: &mut [ClipVertex], wanted: impl Fn(&ClipVertex) -> bool) -
 }
 
 /// The corner where the faces are nearest or overlap most.
+#[inline]
 pub(super) fn deepest(corners: &[ClipVertex]) -> Option<&ClipVertex> {
     corners
         .iter()
@@ -72,6 +75,7 @@ pub(super) fn spread(
 
 /// Twice the area that `p` adds to the triangle of the origin, `a` and `b` beyond one of its two
 /// edges at `b`.
+#[inline]
 fn added_area(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let beyond_ab = -(b - a).perp_dot(p - a);
     let beyond_bo = b.perp_dot(p);
@@ -83,6 +87,7 @@ fn added_area(p: DVec2, a: DVec2, b: DVec2) -> f64 {
 }
 
 /// The corner with the greatest measure above `least`.
+#[inline]
 fn best(corners: &[ClipVertex], least: f64, measure: impl Fn(DVec2) -> f64) -> Option<&ClipVertex> {
     let mut best = None;
     let mut greatest = least;

@@ -8,6 +8,7 @@ use glam::DVec3;
 
 use super::feature::Feature;
 use super::{Answer, Proximity};
+use crate::both::both;
 use crate::gjk;
 use crate::stats::Cost;
 use crate::support::{Cso, Polytope, VertexId};
@@ -26,8 +27,8 @@ pub(super) fn certify<A: Polytope, B: Polytope>(
     if ends_1[0] != ends_1[1] && ends_2[0] != ends_2[1] {
         return None;
     }
-    let [a, b] = ends_1.map(|v| cso.shape_1.vertex(v));
-    let [c, d] = ends_2.map(|v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
+    let [a, b] = both(ends_1, |v| cso.shape_1.vertex(v));
+    let [c, d] = both(ends_2, |v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
     let (on_1, on_2) = (nearest([a, b], c), nearest([c, d], a));
     let distance = on_1.distance(on_2);
     if distance.partial_cmp(&(TOUCHING * cso.size())) != Some(std::cmp::Ordering::Greater) {

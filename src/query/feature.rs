@@ -24,6 +24,7 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::Proximity;
+use crate::both::both;
 use crate::epa::Penetration;
 use crate::gjk::SeparatingAxis;
 use crate::pose::RelativePose;
@@ -44,6 +45,7 @@ pub enum Feature {
 }
 
 /// Re-evaluates the facet that `features` span.
+#[inline]
 pub(super) fn certify<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     features: [Feature; 2],
@@ -87,6 +89,7 @@ pub fn vertices<A: Polytope, B: Polytope>(
     ]
 }
 
+#[inline]
 fn vertex_of(shape: &impl Polytope, feature: Feature) -> VertexId {
     let vertex = match feature {
         Feature::Vertex(v) => v,
@@ -144,6 +147,7 @@ struct Test {
 impl Test {
     /// A face of `p` against `q`; everything in the frame of `p`. `ids` are the face and a
     /// vertex of `q` to climb from.
+    #[inline]
     fn face<P: Polytope, Q: Polytope>(
         &self,
         p: &P,
@@ -177,7 +181,7 @@ impl Test {
         };
         if let Some(i) = side_beyond(count, corner, normal, self.tolerance) {
             let next = if i + 1 < count { i + 1 } else { 0 };
-            let ends = [i, next].map(|i| [p.face_vertex(face, i), q_id]);
+            let ends = both([i, next], |i| [p.face_vertex(face, i), q_id]);
             return Verdict::Beyond(Side::new(ends, corner(next) - corner(i), normal));
         }
         let apex = p.center() - q_pose.point_to_1(q.center());
@@ -189,6 +193,7 @@ impl Test {
     }
 
     /// Two edges that cross; everything in frame 1.
+    #[inline]
     fn edges<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
@@ -197,8 +202,8 @@ impl Test {
         ends_2: [VertexId; 2],
         cost: &mut Cost,
     ) -> Verdict {
-        let [a0, a1] = ends_1.map(|v| cso.shape_1.vertex(v));
-        let [b0, b1] = ends_2.map(|v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
+        let [a0, a1] = both(ends_1, |v| cso.shape_1.vertex(v));
+        let [b0, b1] = both(ends_2, |v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
         let (along_1, along_2) = (a1 - a0, b1 - b0);
         let cross = along_1.cross(along_2);
         let area_squared = cross.length_squared();
@@ -253,22 +258,25 @@ impl Test {
 
 /// The corners of the facet that two edges span, counter-clockwise seen from outside. `along`: the
 /// outward normal is along the cross product of their directions, not against it.
+#[inline]
 fn parallelogram(
     [edge_1, edge_2]: [[DVec3; 2]; 2],
     [ends_1, ends_2]: [[VertexId; 2]; 2],
     along: bool,
 ) -> [CsoVertex; 4] {
+    let corner = |a: usize, b: usize| CsoVertex {
+        w: edge_1[a] - edge_2[b],
+        on_1: edge_1[a],
+        ids: [ends_1[a], ends_2[b]],
+    };
     // The first edge forwards, then the second backwards, turn clockwise about the cross product.
-    let turn = if along { [3, 2, 1, 0] } else { [0, 1, 2, 3] };
-    turn.map(|i| {
-        let (a, b) = ([0, 1, 1, 0][i], [0, 0, 1, 1][i]);
-        let on_1 = edge_1[a];
-        CsoVertex {
-            w: on_1 - edge_2[b],
-            on_1,
-            ids: [ends_1[a], ends_2[b]],
-        }
-    })
+    let (from, to) = if along { (1, 0) } else { (0, 1) };
+    [
+        corner(0, from),
+        corner(1, from),
+        corner(1, to),
+        corner(0, to),
+    ]
 }
 
 /// The witness points of a penetration depth, from its features where these determine them: a

@@ -21,6 +21,7 @@ pub use feature::{Feature, vertices};
 
 use glam::DVec3;
 
+use crate::both::both;
 use crate::epa::{self, Depth, EpaScratch, Penetration, Shells};
 use crate::gjk::{self, Closest, Outcome, SeparatingAxis};
 use crate::simplex::Preferred;
@@ -266,7 +267,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             match next {
                 Some(next) if steps_left > 0 => features = next,
                 _ => {
-                    let ends = ends.map(|ids| self.cso.vertex(ids));
+                    let ends = both(ends, |ids| self.cso.vertex(ids));
                     let distinct = if ends[0].ids == ends[1].ids { 1 } else { 2 };
                     return self.run_gjk(&ends[..distinct], gjk);
                 }

@@ -9,6 +9,7 @@
 use glam::DVec3;
 
 use super::feature::{Feature, Side};
+use crate::both::both;
 use crate::pose::RelativePose;
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 
@@ -35,7 +36,7 @@ pub(super) fn across<A: Polytope, B: Polytope>(
         vertex: from_1,
     };
     // As shape 2 sees it: what looks away from shape 1 for the one looks inwards for the other.
-    let seen = [normal, outward].map(|dir| -cso.pose.direction_to_2(dir));
+    let seen = both([normal, outward], |dir| -cso.pose.direction_to_2(dir));
     let pose = cso.pose.inverse();
     let [feature_2, feature_1] = ridge.next(cso.shape_2, cso.shape_1, &pose, seen)?;
     Some([feature_1, feature_2])
@@ -57,7 +58,7 @@ pub(super) fn around<A: Polytope, B: Polytope>(
         first.meet([normal, sideways], along, [neighbor, id_2]);
     }
     let corner_2 = cso.shape_2.vertex(id_2);
-    let seen = [normal, sideways].map(|dir| cso.pose.direction_to_2(dir));
+    let seen = both([normal, sideways], |dir| cso.pose.direction_to_2(dir));
     for neighbor in cso.shape_2.neighbors(id_2) {
         let along = corner_2 - cso.shape_2.vertex(neighbor);
         first.meet(seen, along, [id_1, neighbor]);
@@ -127,7 +128,7 @@ impl Ridge {
         if beyond == DVec3::ZERO {
             return None; // no plane to turn to
         }
-        let [first, last] = [normal, beyond].map(|n| -q_pose.direction_to_2(n));
+        let [first, last] = both([normal, beyond], |n| -q_pose.direction_to_2(n));
         let corner = q.vertex(self.vertex);
         // The way from the one normal to the other goes from 0 to 1.
         let mut nearest = 1.0;

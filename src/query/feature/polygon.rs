@@ -3,8 +3,11 @@
 
 use glam::DVec3;
 
+use crate::both::both;
+
 /// The side of a polygon, counter-clockwise about `normal`, beyond which the origin projects
 /// farthest, as the index of its first corner; `None` if it projects inside, up to `tolerance`.
+#[inline]
 pub(super) fn side_beyond(
     count: usize,
     corner: impl Fn(usize) -> DVec3,
@@ -32,6 +35,7 @@ pub(super) fn side_beyond(
 
 /// Whether the origin is at least `depth` inside of all side planes of the pyramid over a
 /// polygon, counter-clockwise seen from outside, whose apex is beneath it.
+#[inline]
 pub(super) fn pyramid_holds_ball(
     count: usize,
     corner: impl Fn(usize) -> DVec3,
@@ -50,8 +54,11 @@ pub(super) fn pyramid_holds_ball(
 }
 
 /// Where the lines `a + s along_1` and `b + t along_2`, `offset` being `a - b`, are nearest.
+#[inline]
 pub(super) fn crossing(offset: DVec3, along_1: DVec3, along_2: DVec3) -> [f64; 2] {
     let cross = along_1.cross(along_2);
     let area_squared = cross.length_squared();
-    [along_2, along_1].map(|along| -offset.dot(along.cross(cross)) / area_squared)
+    both([along_2, along_1], |along| {
+        -offset.dot(along.cross(cross)) / area_squared
+    })
 }

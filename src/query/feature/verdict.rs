@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::both::both;
 use crate::gjk::SeparatingAxis;
 use crate::pose::RelativePose;
 use crate::query::Proximity;
@@ -37,6 +38,7 @@ pub(in crate::query) struct Side {
 
 impl Side {
     /// From one vertex to the next, which is `along` away.
+    #[inline]
     pub(super) fn new(ends: [[VertexId; 2]; 2], along: DVec3, normal: DVec3) -> Self {
         Self {
             ends,
@@ -48,6 +50,7 @@ impl Side {
 
 impl Verdict {
     /// From the frame of shape 2, with the shapes swapped, to frame 1.
+    #[inline]
     pub(super) fn mirrored(self, pose: &RelativePose) -> Self {
         let direction = |dir| -pose.direction_to_1(dir);
         match self {
@@ -58,7 +61,7 @@ impl Verdict {
             }),
             Self::Certified(proximity) => Self::Certified(mirrored(&proximity, pose)),
             Self::Beyond(side) => Self::Beyond(Side {
-                ends: side.ends.map(swapped),
+                ends: both(side.ends, swapped),
                 normal: direction(side.normal),
                 outward: direction(side.outward),
             }),
@@ -76,10 +79,12 @@ impl Verdict {
     }
 }
 
+#[inline]
 fn swapped<T>([a, b]: [T; 2]) -> [T; 2] {
     [b, a]
 }
 
+#[inline]
 fn mirrored(p: &Proximity, pose: &RelativePose) -> Proximity {
     Proximity {
         signed_distance: p.signed_distance,
