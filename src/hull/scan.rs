@@ -5,11 +5,11 @@
 //! is mostly one, the highest in f64. So the answer is exact.
 
 use std::array;
+use std::ops::RangeInclusive;
 
 use glam::{DVec3, Vec3};
-use wide::f32x4;
+use wide::{f32x4, f32x8};
 
-use super::top::{LANES, coordinates};
 use crate::support::VertexId;
 
 /// Up to so many vertices, as many as a mask has bits, a scan is quicker than a cold climb, with 64
@@ -19,15 +19,23 @@ pub(super) const LARGEST: usize = 64;
 
 /// How far two heights in f32 may be in the wrong order, for points in the unit ball and a direction
 /// whose largest coordinate is 1: coordinates, direction, products and two sums are rounded, each by
-/// at most the sum of their products, which is below √3; so both heights together by 10 √3 units.
-const ROUNDING: f32 = 18.0 / (1 << 24) as f32;
+/// at most the sum of their products, which is below √3; so both heights together by 10 √3 units, and
+/// their difference by one more.
+const ROUNDING: f32 = 20.0 / (1 << 24) as f32;
+
+/// Largest coordinates of directions that f32 takes as they are: nothing overflows, and what
+/// underflows is far below the rounding.
+const SIZES: RangeInclusive<f64> = 1e-18..=1e18;
+
+/// Vertices are looked at in eights.
+const LANES: usize = 8;
 
 /// The vertices of a small hull.
 #[derive(Clone, Debug)]
 pub(super) struct Scan {
-    /// Coordinate by coordinate in fours, from the centre, in radii. The last one is filled up with
+    /// Coordinate by coordinate in eights, from the centre, in radii. The last one is filled up with
     /// its first vertex.
-    fours: Box<[[f32x4; 3]]>,
+    rows: Box<[[f32x8; 3]]>,
     /// A bit for each vertex.
     all: u64,
 }
@@ -39,19 +47,20 @@ impl Scan {
             return None;
         }
         let place = |p: &Vec3| ((p.as_dvec3() - center) / radius).as_vec3();
-        let fours = points.chunks(LANES).map(|chunk| {
-            let lane = |i| place(chunk.get(i).unwrap_or(&chunk[0]));
-            coordinates(array::from_fn::<_, LANES, _>(lane).each_ref()).map(f32x4::new)
+        let rows = points.chunks(LANES).map(|chunk| {
+            let lanes: [Vec3; LANES] = array::from_fn(|i| place(chunk.get(i).unwrap_or(&chunk[0])));
+            array::from_fn(|axis| f32x8::new(lanes.map(|p| p[axis])))
         });
         Some(Self {
-            fours: fours.collect(),
+            rows: rows.collect(),
             all: u64::MAX >> (u64::BITS as usize - points.len()),
         })
     }
 
     /// The extreme vertex of `points` in direction `dir`: of those that tie the preferred one, so
-    /// that contacts stay where they are, or the first.
-    #[inline]
+    /// that contacts stay where they are, or the first. (Inlined, as what it calls: a direction that goes
+    /// through memory is waited for longer than a scan takes.)
+    #[inline(always)]
     pub fn highest(&self, points: &[Vec3], dir: DVec3, preferred: VertexId) -> VertexId {
         let mut candidates = self.candidates(dir);
         let mut highest = candidates.trailing_zeros();
@@ -75,20 +84,28 @@ impl Scan {
     }
 
     /// A bit for each vertex that may be the highest; there is one at least.
-    #[inline]
+    #[inline(always)]
     fn candidates(&self, dir: DVec3) -> u64 {
         let size = dir.abs().max_element();
-        let unit = (dir / size).as_vec3().to_array().map(f32x4::splat);
-        let mut heights = [f32x4::ZERO; LARGEST / LANES];
-        let mut highest = f32x4::splat(f32::NEG_INFINITY);
-        for (height, [x, y, z]) in heights.iter_mut().zip(&self.fours) {
-            *height = *x * unit[0] + *y * unit[1] + *z * unit[2];
+        // A division takes a quarter of the time of a scan; directions are mostly unit vectors.
+        let (dir, size) = if SIZES.contains(&size) {
+            (dir, size)
+        } else {
+            (dir / size, 1.0)
+        };
+        let dir = dir.as_vec3().to_array().map(f32x8::splat);
+        let mut heights = [f32x8::ZERO; LARGEST / LANES];
+        let mut highest = f32x8::splat(f32::NEG_INFINITY);
+        for (height, [x, y, z]) in heights.iter_mut().zip(&self.rows) {
+            *height = *x * dir[0] + *y * dir[1] + *z * dir[2];
             highest = highest.fast_max(*height);
         }
-        let [a, b, c, d] = highest.to_array();
-        let least = f32x4::splat(greater(greater(a, b), greater(c, d)) - ROUNDING);
+        let [low, high]: [f32x4; 2] = bytemuck::cast(highest);
+        let [a, b, c, d] = low.fast_max(high).to_array();
+        let least = greater(greater(a, b), greater(c, d)) - ROUNDING * size as f32;
+        let least = f32x8::splat(least);
         let mut candidates = 0;
-        for (number, height) in heights[..self.fours.len()].iter().enumerate() {
+        for (number, height) in heights[..self.rows.len()].iter().enumerate() {
             let bits = height.simd_ge(least).to_bitmask();
             candidates |= u64::from(bits) << (LANES * number);
         }
@@ -98,7 +115,7 @@ impl Scan {
     }
 
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.fours)
+        size_of_val(&*self.rows)
     }
 }
 
