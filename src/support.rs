@@ -43,6 +43,11 @@ pub trait Support {
 /// A face of a polytope: polygon and plane.
 pub type FaceId = u32;
 
+/// The corners of a polygon in their order.
+pub trait Corners: ExactSizeIterator<Item = DVec3> + DoubleEndedIterator + Clone {}
+
+impl<T: ExactSizeIterator<Item = DVec3> + DoubleEndedIterator + Clone> Corners for T {}
+
 /// A convex polytope: a support mapping with faces and edges around it.
 pub trait Polytope: Support {
     /// The position of a vertex.
@@ -68,7 +73,7 @@ pub trait Polytope: Support {
     fn face_vertex(&self, face: FaceId, i: usize) -> VertexId;
 
     /// The corners of a face, counter-clockwise seen from outside.
-    fn corners(&self, face: FaceId) -> impl Iterator<Item = DVec3> {
+    fn corners(&self, face: FaceId) -> impl Corners {
         (0..self.face_len(face)).map(move |i| self.vertex(self.face_vertex(face, i)))
     }
 

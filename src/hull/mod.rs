@@ -21,7 +21,7 @@ pub use error::HullError;
 use glam::{DVec3, Vec3};
 
 use crate::stats::Cost;
-use crate::support::{FaceId, Polytope, Support, VertexId};
+use crate::support::{Corners, FaceId, Polytope, Support, VertexId};
 use climb::Slope;
 use faces::Faces;
 use graph::EdgeGraph;
@@ -182,7 +182,7 @@ impl Polytope for Hull {
     }
 
     #[inline]
-    fn corners(&self, face: FaceId) -> impl Iterator<Item = DVec3> {
+    fn corners(&self, face: FaceId) -> impl Corners {
         let corners = self.faces.polygon(face).iter();
         corners.map(|corner| self.vertex(corner.vertex.into()))
     }

@@ -170,8 +170,7 @@ impl Test {
                 ids: [p.face_vertex(face, 0), q_id],
             });
         }
-        let count = p.face_len(face);
-        let corner = |i: usize| p.vertex(p.face_vertex(face, i)) - on_q;
+        let corners = p.corners(face).map(|corner| corner - on_q);
         let certified = Proximity {
             signed_distance,
             normal,
@@ -179,14 +178,13 @@ impl Test {
             on_2: on_q,
             features: [Feature::Face(face), Feature::Vertex(q_id)],
         };
-        if let Some(i) = side_beyond(count, corner, normal, self.tolerance) {
-            let next = if i + 1 < count { i + 1 } else { 0 };
-            let ends = both([i, next], |i| [p.face_vertex(face, i), q_id]);
-            return Verdict::Beyond(Side::new(ends, corner(next) - corner(i), normal));
+        if let Some(side) = side_beyond(corners.clone(), normal, self.tolerance) {
+            let ends = both(side.ends, |i| [p.face_vertex(face, i), q_id]);
+            return Verdict::Beyond(Side::new(ends, side.along, normal));
         }
         let apex = p.center() - q_pose.point_to_1(q.center());
         let depth = -signed_distance - self.tolerance;
-        if signed_distance >= 0.0 || pyramid_holds_ball(count, corner, apex, depth) {
+        if signed_distance >= 0.0 || pyramid_holds_ball(corners, apex, depth) {
             return Verdict::Certified(certified);
         }
         Verdict::Unproved(certified)
@@ -222,10 +220,10 @@ impl Test {
         let normal = cross * (outward / area_squared.sqrt());
         // Before a vertex is searched for: whether or not the two edges still span a facet, it is left.
         let vertices = parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], outward > 0.0);
-        let corner = |i: usize| vertices[i].w;
-        if let Some(i) = side_beyond(4, corner, normal, self.tolerance) {
-            let [from, to] = [vertices[i], vertices[(i + 1) % 4]];
-            return Verdict::Beyond(Side::new([from.ids, to.ids], to.w - from.w, normal));
+        let corners = vertices.iter().map(|vertex| vertex.w);
+        if let Some(side) = side_beyond(corners.clone(), normal, self.tolerance) {
+            let ends = both(side.ends, |i| vertices[i].ids);
+            return Verdict::Beyond(Side::new(ends, side.along, normal));
         }
         let extreme = cso.support(normal, [ends_1[0], ends_2[0]], cost);
         let signed_distance = -normal.dot(extreme.w);
@@ -249,7 +247,7 @@ impl Test {
             features,
         };
         let depth = -signed_distance - self.tolerance;
-        if signed_distance >= 0.0 || pyramid_holds_ball(4, corner, center, depth) {
+        if signed_distance >= 0.0 || pyramid_holds_ball(corners, center, depth) {
             return Verdict::Certified(proximity);
         }
         Verdict::Unproved(proximity)

@@ -4,31 +4,43 @@
 use glam::DVec3;
 
 use crate::both::both;
+use crate::support::Corners;
+
+/// A side of a polygon.
+pub(super) struct PolygonSide {
+    /// The numbers of its corners.
+    pub ends: [usize; 2],
+    /// From the first to the second.
+    pub along: DVec3,
+}
 
 /// The side of a polygon, counter-clockwise about `normal`, beyond which the origin projects
-/// farthest, as the index of its first corner; `None` if it projects inside, up to `tolerance`.
+/// farthest; `None` if it projects inside, up to `tolerance`.
 #[inline]
 pub(super) fn side_beyond(
-    count: usize,
-    corner: impl Fn(usize) -> DVec3,
+    corners: impl Corners,
     normal: DVec3,
     tolerance: f64,
-) -> Option<usize> {
+) -> Option<PolygonSide> {
     let mut beyond = None;
     let mut farthest = tolerance * tolerance;
-    let mut from = corner(count - 1);
-    for i in 0..count {
-        let to = corner(i);
-        let inward = normal.cross(to - from);
+    let mut from = corners.clone().next_back()?;
+    let mut number = corners.len() - 1;
+    for (i, to) in corners.enumerate() {
+        let along = to - from;
+        let inward = normal.cross(along);
         let height = -inward.dot(from);
-        from = to;
         if height < 0.0 {
             let squared = height * height / inward.length_squared();
             if squared > farthest {
                 farthest = squared;
-                beyond = Some((i + count - 1) % count);
+                beyond = Some(PolygonSide {
+                    ends: [number, i],
+                    along,
+                });
             }
         }
+        (number, from) = (i, to);
     }
     beyond
 }
@@ -36,16 +48,12 @@ pub(super) fn side_beyond(
 /// Whether the origin is at least `depth` inside of all side planes of the pyramid over a
 /// polygon, counter-clockwise seen from outside, whose apex is beneath it.
 #[inline]
-pub(super) fn pyramid_holds_ball(
-    count: usize,
-    corner: impl Fn(usize) -> DVec3,
-    apex: DVec3,
-    depth: f64,
-) -> bool {
+pub(super) fn pyramid_holds_ball(mut corners: impl Corners, apex: DVec3, depth: f64) -> bool {
     let depth = depth.max(0.0);
-    let mut from = corner(count - 1);
-    (0..count).all(|i| {
-        let to = corner(i);
+    let Some(mut from) = corners.clone().next_back() else {
+        return false;
+    };
+    corners.all(|to| {
         let inward = (to - from).cross(apex - from);
         let height = -inward.dot(from);
         from = to;
