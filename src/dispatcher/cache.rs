@@ -4,9 +4,8 @@
 //! and cost rapier nothing; a workspace would make it rebuild its solver graph every step. So
 //! the memory is written where the manifold has room, in words that mean what they say:
 //!
-//! - without points, `local_n1` is the separating axis (parry's own habit) in the frame of the
-//!   kernels' first shape, and `local_n2`, which nobody reads then, holds the two extreme vertices
-//!   as whole numbers;
+//! - without points, `local_n1` is the separating axis (parry's own habit) in an [`AxisFrame`], and
+//!   `local_n2`, which nobody reads then, holds the two extreme vertices as whole numbers;
 //! - with points, `local_n1` is the contact normal, and the feature ids of the first point name
 //!   the features in contact.
 //!
@@ -18,13 +17,58 @@ use parry3d::query::ContactManifold;
 use parry3d::shape::PackedFeatureId;
 
 use crate::gjk::SeparatingAxis;
+use crate::pose::RelativePose;
 use crate::query::{self, Feature, Memory, Proximity};
-use crate::support::{Cso, Polytope};
+use crate::support::{Cso, Polytope, Support};
 use crate::tolerance::UNIT_NORMAL;
+
+/// Of which shape's frame a pair keeps its separating axis.
+#[derive(Clone, Copy)]
+pub(super) enum AxisFrame<'a> {
+    /// The kernels' first shape.
+    First,
+    /// Their second shape, which is there in the frame of the first.
+    Second(&'a RelativePose),
+}
+
+impl<'a> AxisFrame<'a> {
+    /// That of the larger shape. Where sizes differ it is mostly the small one that tumbles, over a
+    /// floor or along a wall, and seen from these the axis stays where it is.
+    #[inline]
+    pub fn of<A: Support, B: Support>(cso: &Cso<'a, A, B>) -> Self {
+        if cso.shape_2.radius() > cso.shape_1.radius() {
+            Self::Second(cso.pose)
+        } else {
+            Self::First
+        }
+    }
+
+    /// From the frame of the kernels' first shape.
+    #[inline]
+    fn keep(self, axis: DVec3) -> DVec3 {
+        match self {
+            Self::First => axis,
+            Self::Second(pose) => pose.direction_to_2(axis),
+        }
+    }
+
+    /// To the frame of the kernels' first shape.
+    #[inline]
+    fn recall(self, axis: DVec3) -> DVec3 {
+        match self {
+            Self::First => axis,
+            Self::Second(pose) => pose.direction_to_1(axis),
+        }
+    }
+}
 
 /// Reads what the previous frame left. `swapped`: the manifold's second shape is the kernels' first.
 #[inline]
-pub(super) fn read<M, C>(manifold: &ContactManifold<M, C>, swapped: bool) -> Memory {
+pub(super) fn read<M, C>(
+    manifold: &ContactManifold<M, C>,
+    swapped: bool,
+    frame: AxisFrame<'_>,
+) -> Memory {
     let stored = if swapped && !manifold.points.is_empty() {
         manifold.local_n2
     } else {
@@ -37,7 +81,7 @@ pub(super) fn read<M, C>(manifold: &ContactManifold<M, C>, swapped: bool) -> Mem
         None => {
             let n2 = manifold.local_n2;
             // Casts saturate, and NaN becomes 0: any vector is some pair of vertices.
-            Memory::Axis(axis, [n2.x as u32, n2.y as u32])
+            Memory::Axis(frame.recall(axis), [n2.x as u32, n2.y as u32])
         }
         Some(point) => match (unpack(point.fid1), unpack(point.fid2)) {
             (Some(f1), Some(f2)) => Memory::Contact(axis, ordered([f1, f2], swapped)),
@@ -48,9 +92,13 @@ pub(super) fn read<M, C>(manifold: &ContactManifold<M, C>, swapped: bool) -> Mem
 
 /// Leaves a separating axis in a manifold without points.
 #[inline]
-pub(super) fn write_axis<M, C>(manifold: &mut ContactManifold<M, C>, apart: &SeparatingAxis) {
+pub(super) fn write_axis<M, C>(
+    manifold: &mut ContactManifold<M, C>,
+    apart: &SeparatingAxis,
+    frame: AxisFrame<'_>,
+) {
     manifold.points.clear();
-    manifold.local_n1 = apart.axis.as_vec3();
+    manifold.local_n1 = frame.keep(apart.axis).as_vec3();
     manifold.local_n2 = Vec3::new(apart.ids[0] as f32, apart.ids[1] as f32, 0.0);
 }
 
@@ -78,7 +126,7 @@ pub(super) fn write_start<A: Polytope, B: Polytope, M, C>(
         separation: near.signed_distance,
         ids: query::vertices(cso, near.features),
     };
-    write_axis(manifold, &start);
+    write_axis(manifold, &start, AxisFrame::of(cso));
 }
 
 /// What belongs to the two shapes of a pair, from the kernels' order to the manifold's or back.

@@ -6,10 +6,11 @@ use parry3d::query::ContactManifold;
 use parry3d::query::details::{NormalConstraintsPair, contact_manifold_pfm_pfm};
 use parry3d::shape::PolygonalFeatureMap;
 
+use super::cache::{self, AxisFrame};
 use super::constraints::Constraints;
+use super::half_space;
 use super::pair::{HalfSpace, Pair, PairVisitor, Scratch};
 use super::points::write_points;
-use super::{cache, half_space};
 use crate::both::both;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch};
@@ -49,6 +50,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         let pose = pair.pose(self.pos12);
         let cso = pair.cso(&pose);
         let max_distance = pair.between_cores(self.prediction);
+        let frame = AxisFrame::of(&cso);
         let mut cost = Cost::default();
         let (answer, stage) = Query {
             cso: &cso,
@@ -57,10 +59,10 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             scratch: &mut scratch.epa,
             cost: &mut cost,
         }
-        .run(&cache::read(self.manifold, pair.swapped))?;
+        .run(&cache::read(self.manifold, pair.swapped, frame))?;
         self.stats.record(stage, &cost);
         match answer {
-            Answer::Apart(apart) => cache::write_axis(self.manifold, &apart),
+            Answer::Apart(apart) => cache::write_axis(self.manifold, &apart, frame),
             Answer::Near(near) => {
                 self.write_contacts(pair, &cso, &near, max_distance, &mut scratch.clip);
             }
@@ -75,11 +77,11 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         let pose = pair.pose(self.pos12);
         let max_distance = pair.between_cores(self.prediction);
         let mut cost = Cost::default();
-        let memory = cache::read(self.manifold, pair.swapped);
+        let memory = cache::read(self.manifold, pair.swapped, AxisFrame::First);
         let near = half_space::deepest(pair, &pose, &memory, &mut cost);
         if near.signed_distance > max_distance {
             self.stats.record(Stage::Axis, &cost);
-            cache::write_axis(self.manifold, &half_space::axis(&near));
+            cache::write_axis(self.manifold, &half_space::axis(&near), AxisFrame::First);
         } else {
             self.stats.record(Stage::Feature, &cost);
             let contacts =
@@ -111,10 +113,10 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                 scratch: &mut scratch.epa,
                 cost: &mut cost,
             }
-            .prove_apart(&cache::read(self.manifold, pair.swapped));
+            .prove_apart(&cache::read(self.manifold, pair.swapped, AxisFrame::First));
             if let Some((apart, stage)) = apart {
                 self.stats.record(stage, &cost);
-                cache::write_axis(self.manifold, &apart);
+                cache::write_axis(self.manifold, &apart, AxisFrame::First);
                 return Some(());
             }
         }
