@@ -2,7 +2,7 @@
 
 use std::cmp::Ordering;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use crate::pose::RelativePose;
 use crate::stats::Cost;
@@ -71,6 +71,14 @@ pub trait Polytope: Support {
 
     /// The `i`-th vertex of a face, counter-clockwise seen from outside.
     fn face_vertex(&self, face: FaceId, i: usize) -> VertexId;
+
+    /// Four of the corners of a face, in f32.
+    #[inline(always)]
+    fn four_corners(&self, face: FaceId, numbers: [usize; 4]) -> [Vec3; 4] {
+        let [a, b, c, d] = numbers;
+        let corner = |i| self.vertex(self.face_vertex(face, i)).as_vec3();
+        [corner(a), corner(b), corner(c), corner(d)]
+    }
 
     /// The corners of a face, counter-clockwise seen from outside.
     fn corners(&self, face: FaceId) -> impl Corners {
@@ -196,13 +204,14 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
     }
 
     /// A point inside, with its origins on the two shapes.
+    #[inline]
     pub fn center(&self) -> DVec3 {
         self.shape_1.center() - self.pose.point_to_1(self.shape_2.center())
     }
 
     /// The line of centres, and by how much the balls around the shapes are apart along it, if that
     /// is more than `beyond`.
-    #[inline]
+    #[inline(always)]
     pub fn test_balls(&self, beyond: f64) -> Option<(DVec3, f64)> {
         let offset = -self.center();
         let reach = self.size() + beyond;
@@ -215,11 +224,13 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
     }
 
     /// The length that tolerances of the whole pair are relative to.
+    #[inline]
     pub fn size(&self) -> f64 {
         self.shape_1.radius() + self.shape_2.radius()
     }
 
     /// The length that tolerances must not exceed if the smaller shape is to keep its accuracy.
+    #[inline]
     pub fn smaller_radius(&self) -> f64 {
         self.shape_1.radius().min(self.shape_2.radius())
     }

@@ -15,11 +15,12 @@ use glam::{DVec3, Vec3};
 use parry3d::math::Rotation;
 use parry3d::query::ContactManifold;
 use parry3d::shape::PackedFeatureId;
+use wide::u32x4;
 
 use crate::gjk::SeparatingAxis;
 use crate::pose::RelativePose;
 use crate::query::{self, Feature, Memory, Proximity};
-use crate::support::{Cso, Polytope, Support};
+use crate::support::{Cso, Polytope, Support, VertexId};
 use crate::tolerance::UNIT_NORMAL;
 
 /// Of which shape's frame a pair keeps its separating axis.
@@ -90,6 +91,22 @@ pub(super) fn read<M, C>(
     }
 }
 
+/// Leaves another axis where there is one, at the same vertices; and one at those of `start` in the
+/// place of a contact.
+#[inline(always)]
+pub(super) fn renew_axis<M, C>(
+    manifold: &mut ContactManifold<M, C>,
+    axis: DVec3,
+    frame: AxisFrame<'_>,
+    start: impl FnOnce() -> [VertexId; 2],
+) {
+    manifold.local_n1 = frame.keep(axis).as_vec3();
+    if !manifold.points.is_empty() {
+        manifold.points.clear();
+        manifold.local_n2 = as_vector(start());
+    }
+}
+
 /// Leaves a separating axis in a manifold without points.
 #[inline]
 pub(super) fn write_axis<M, C>(
@@ -99,7 +116,13 @@ pub(super) fn write_axis<M, C>(
 ) {
     manifold.points.clear();
     manifold.local_n1 = frame.keep(apart.axis).as_vec3();
-    manifold.local_n2 = Vec3::new(apart.ids[0] as f32, apart.ids[1] as f32, 0.0);
+    manifold.local_n2 = as_vector(apart.ids);
+}
+
+/// Of f32 whole numbers up to 2^24 are exact.
+#[inline]
+fn as_vector(ids: [VertexId; 2]) -> Vec3 {
+    Vec3::new(ids[0] as f32, ids[1] as f32, 0.0)
 }
 
 /// Parry's routines keep a separating axis in the frame of the manifold's first shape, as one from
@@ -159,21 +182,17 @@ pub(super) fn pack(feature: Feature) -> PackedFeatureId {
     })
 }
 
-/// What an old contact and a new one between the same features have in common. A vertex that moves
-/// on from one face to the next stays what it is.
-#[inline]
-pub(super) fn identity(ids: [PackedFeatureId; 2]) -> u64 {
-    let [a, b] = ids.map(|id| id.0);
-    let vertex_and_face = (a ^ b) & KIND == VERTEX ^ FACE;
-    let unnamed = |id: u32| {
-        if vertex_and_face & (id & KIND == FACE) {
-            FACE
-        } else {
-            id
-        }
-    };
-    let (a, b) = (unnamed(a), unnamed(b));
-    u64::from(a) << 32 | u64::from(b)
+/// What an old contact and a new one between the same features have in common, of four contacts at once
+/// by the packed features of both shapes. A vertex that moves on from one face to the next stays what it
+/// is.
+#[inline(always)]
+pub(super) fn identities([a, b]: [u32x4; 2]) -> [u32x4; 2] {
+    let [kind, face] = [u32x4::splat(KIND), u32x4::splat(FACE)];
+    let vertex_and_face = ((a ^ b) & kind).simd_eq(u32x4::splat(VERTEX ^ FACE));
+    [a, b].map(|id| {
+        let unnamed = vertex_and_face & (id & kind).simd_eq(face);
+        unnamed.bitselect(face, id)
+    })
 }
 
 #[inline]

@@ -52,6 +52,12 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         let max_distance = pair.between_cores(self.prediction);
         let frame = AxisFrame::of(&cso);
         let mut cost = Cost::default();
+        // Two thirds of the pairs that are apart end here: before anything else is done for them.
+        if let Some((axis, _)) = cso.test_balls(max_distance) {
+            self.stats.record(Stage::Balls, &cost);
+            cache::renew_axis(self.manifold, axis, frame, || cso.start(axis));
+            return Some(());
+        }
         let (answer, stage) = Query {
             cso: &cso,
             max_distance,
@@ -59,7 +65,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             scratch: &mut scratch.epa,
             cost: &mut cost,
         }
-        .run(&cache::read(self.manifold, pair.swapped, frame))?;
+        .run_near(&cache::read(self.manifold, pair.swapped, frame))?;
         self.stats.record(stage, &cost);
         match answer {
             Answer::Apart(apart) => cache::write_axis(self.manifold, &apart, frame),
@@ -84,12 +90,17 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             cache::write_axis(self.manifold, &half_space::axis(&near), AxisFrame::First);
         } else {
             self.stats.record(Stage::Feature, &cost);
-            let contacts =
-                manifold::half_space_contacts(pair.hull, &near, max_distance, &mut scratch.clip);
+            let contacts = manifold::half_space_contacts(
+                pair.hull,
+                &pose,
+                &near,
+                max_distance,
+                &mut scratch.clip,
+            );
             let [n1, n2] = cache::ordered(normals(&near, &pose), pair.swapped);
             self.manifold.local_n1 = n1.as_vec3();
             self.manifold.local_n2 = n2.as_vec3();
-            write_points(self.manifold, &pose, &contacts, pair.borders, pair.swapped);
+            write_points(self.manifold, &contacts, pair.borders, pair.swapped);
         }
         Some(())
     }
@@ -197,6 +208,6 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         };
         self.manifold.local_n1 = n1;
         self.manifold.local_n2 = n2;
-        write_points(self.manifold, cso.pose, &contacts, pair.borders, swapped);
+        write_points(self.manifold, &contacts, pair.borders, swapped);
     }
 }

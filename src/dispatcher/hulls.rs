@@ -62,6 +62,20 @@ impl Slot {
         }
     }
 
+    /// Whether it was proved in the span that is under way: the points at its address are the same.
+    #[inline(always)]
+    fn is_proved(&self, span: Option<Span>) -> bool {
+        span.is_some() && self.span == span
+    }
+
+    /// Notes that it was proved again. What it has, at its place in the table.
+    #[inline(always)]
+    fn used(&mut self, place: usize, clock: u64, span: Option<Span>) -> Option<HullRef> {
+        self.last_use = clock;
+        self.span = span;
+        self.prepared.hull().is_some().then_some(HullRef(place))
+    }
+
     /// What goes with it, if nobody else has it.
     fn bytes(&self) -> usize {
         size_of::<Self>() + self.prepared.bytes()
@@ -82,7 +96,7 @@ pub(super) trait Find<'a> {
 pub(super) struct EachProved;
 
 impl<'a> Find<'a> for EachProved {
-    #[inline]
+    #[inline(always)]
     fn find(&mut self, table: &mut HullTable, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
         table.find(polyhedron)
     }
@@ -127,17 +141,18 @@ impl<'a> Find<'a> for LastProved<'a> {
 
 impl HullTable {
     /// Before hulls are looked for, which are unchanged during `span`. References end here.
-    #[inline]
+    #[inline(always)]
     pub fn begin(&mut self, span: Option<Span>) {
         self.span = span;
-        self.make_room();
+        if self.bytes > self.sweep_at.max(KEEP_BYTES) {
+            self.make_room();
+        }
     }
 
-    /// Drops what seems unused, if the table has grown a lot.
+    /// Drops what seems unused.
+    #[cold]
+    #[inline(never)]
     fn make_room(&mut self) {
-        if self.bytes <= self.sweep_at.max(KEEP_BYTES) {
-            return;
-        }
         self.sweeps += 1;
         let oldest = self.clock.saturating_sub(STALE_AFTER);
         self.slots.retain(|slot| slot.last_use >= oldest);
@@ -151,35 +166,36 @@ impl HullTable {
     }
 
     /// The hull of a polyhedron, built if it is new; `None` if it has none.
-    #[inline]
+    #[inline(always)]
     fn find(&mut self, polyhedron: &ConvexPolyhedron) -> Option<HullRef> {
-        self.clock += 1;
         let points = polyhedron.points();
         let address = points.as_ptr() as Address;
-        let recent = self.recent.class(address);
-        let known = if recent.0 == address {
-            Some(recent.1)
-        } else {
-            self.entries.get(&address).copied()
-        };
-        let slot = match known {
-            Some(i) if self.is_proved(i) || self.slots[i].prepared.is_of(points) => i,
-            _ => self.insert(address, polyhedron, known),
-        };
-        *self.recent.class(address) = (address, slot);
-        self.slots[slot].last_use = self.clock;
-        self.slots[slot].span = self.span;
-        self.slots[slot]
-            .prepared
-            .hull()
-            .is_some()
-            .then_some(HullRef(slot))
+        let (known, place) = *self.recent.class(address);
+        if known == address
+            && let Some(slot) = self.slots.get_mut(place)
+            && (slot.is_proved(self.span) || slot.prepared.is_of(points))
+        {
+            self.clock += 1;
+            return slot.used(place, self.clock, self.span);
+        }
+        self.find_among_all(polyhedron)
     }
 
-    /// Whether it was proved in the span that is under way: the points at its address are the same.
-    #[inline]
-    fn is_proved(&self, slot: usize) -> bool {
-        self.span.is_some() && self.slots[slot].span == self.span
+    #[inline(never)]
+    fn find_among_all(&mut self, polyhedron: &ConvexPolyhedron) -> Option<HullRef> {
+        let points = polyhedron.points();
+        let address = points.as_ptr() as Address;
+        let place = match self.entries.get(&address).copied() {
+            Some(i)
+                if self.slots[i].is_proved(self.span) || self.slots[i].prepared.is_of(points) =>
+            {
+                i
+            }
+            known => self.insert(address, polyhedron, known),
+        };
+        *self.recent.class(address) = (address, place);
+        self.clock += 1;
+        self.slots[place].used(place, self.clock, self.span)
     }
 
     #[cold]
@@ -222,7 +238,7 @@ impl Default for Recent {
 }
 
 impl Recent {
-    #[inline]
+    #[inline(always)]
     fn class(&mut self, address: Address) -> &mut (Address, usize) {
         &mut self.0[(address >> 4 ^ address >> 12) % CLASSES]
     }

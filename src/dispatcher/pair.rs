@@ -235,7 +235,8 @@ pub(super) fn visit<V: PairVisitor>(
 }
 
 /// As [`visit`], for shapes that are unchanged during `span`.
-#[inline]
+// In a call the sides would go through memory, which pairs that are apart notice.
+#[inline(always)]
 pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
     mut side_1: Side<'a, impl Find<'a>>,
     mut side_2: Side<'b, impl Find<'b>>,
@@ -279,6 +280,7 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
     }
 
     /// Visits the hull and another shape; `None` if that is not known, or too flat or too small.
+    #[inline(never)]
     fn visit<V: PairVisitor>(self, other: &dyn Shape, visitor: V) -> Option<V::Answer> {
         match other.shape_type() {
             ShapeType::Cuboid => {

@@ -2,11 +2,11 @@
 
 use parry3d::math::Real;
 use parry3d::query::{ContactManifold, TrackedContact};
+use wide::u32x4;
 
 use super::cache;
 use crate::both::both;
 use crate::manifold::{ContactPoint, Contacts, MAX_POINTS};
-use crate::pose::RelativePose;
 
 /// Replaces the manifold's points, and hands the data (the solver's impulses) of the old ones on.
 ///
@@ -14,20 +14,16 @@ use crate::pose::RelativePose;
 /// wrong cost more than the work: so all that a manifold can have are computed, wanted or not.
 pub(super) fn write_points<M, C: Default + Copy>(
     manifold: &mut ContactManifold<M, C>,
-    pose: &RelativePose,
     contacts: &Contacts,
     borders: [f64; 2],
     swapped: bool,
 ) {
     let normals = cache::ordered([manifold.local_n1, manifold.local_n2], swapped);
-    let [n1, n2] = both(normals, |n| n.as_dvec3());
+    let [to_border_1, to_border_2] = [0, 1].map(|side| normals[side] * borders[side] as Real);
     let count = contacts.as_slice().len();
     let place = |contact: &ContactPoint| {
-        let points = [
-            contact.on_1 + n1 * borders[0],
-            pose.point_to_2(contact.on_2) + n2 * borders[1],
-        ];
-        let [local_p1, local_p2] = cache::ordered(both(points, |p| p.as_vec3()), swapped);
+        let points = [contact.on_1 + to_border_1, contact.on_2 + to_border_2];
+        let [local_p1, local_p2] = cache::ordered(points, swapped);
         let [fid1, fid2] = cache::ordered(both(contact.features, cache::pack), swapped);
         TrackedContact {
             local_p1,
@@ -71,17 +67,37 @@ pub(super) fn write_points<M, C: Default + Copy>(
     }));
 }
 
-/// What the first contacts of a manifold are between; see [`cache::identity`].
-#[derive(PartialEq)]
-struct Identities([u64; MAX_POINTS]);
+/// What the contacts of a manifold are between, see [`cache::identity`]: by the first shape, and by the
+/// second.
+struct Identities([u32x4; 2]);
 
 impl Identities {
+    /// Of the first contacts; of those that a manifold could have beside them, nothing.
+    #[inline(always)]
     fn of<C>(contacts: &[TrackedContact<C>]) -> Self {
-        let mut identities = Self([0; MAX_POINTS]);
-        for (identity, contact) in identities.0.iter_mut().zip(contacts) {
-            *identity = cache::identity([contact.fid1, contact.fid2]);
+        let [mut first, mut second] = [[0; MAX_POINTS]; 2];
+        for (i, contact) in contacts.iter().take(MAX_POINTS).enumerate() {
+            [first[i], second[i]] = [contact.fid1.0, contact.fid2.0];
         }
-        identities
+        Self(cache::identities([first.into(), second.into()]))
+    }
+
+    /// A bit for each that is the same as one of the others.
+    #[inline(always)]
+    fn same(&self, others: &Self, one: usize) -> u32 {
+        let [a, b] = [0, 1].map(|side| {
+            let one = u32x4::splat(others.0[side].to_array()[one]);
+            self.0[side].simd_eq(one)
+        });
+        (a & b).to_bitmask()
+    }
+}
+
+impl PartialEq for Identities {
+    #[inline(always)]
+    fn eq(&self, other: &Self) -> bool {
+        let [a, b] = [0, 1].map(|side| self.0[side] ^ other.0[side]);
+        !(a | b).any()
     }
 }
 
@@ -102,12 +118,11 @@ fn heirs<C>(
     let mut heirs = [NONE; MAX_POINTS];
     // A bit for each that has no heir yet.
     let mut left = (1_u32 << old.len()) - 1;
-    for (heir, sought) in heirs.iter_mut().zip(new_ids.0) {
-        for (j, id) in old_ids.0.into_iter().enumerate() {
-            let same = (id == sought) & (left >> j & 1 == 1) & (*heir == NONE);
-            *heir = if same { j } else { *heir };
-            left &= !(u32::from(same) << j);
-        }
+    for (i, heir) in heirs.iter_mut().enumerate() {
+        let candidates = old_ids.same(new_ids, i) & left;
+        *heir = (candidates.trailing_zeros() as usize).min(NONE);
+        // All but the lowest one.
+        left ^= candidates & candidates.wrapping_neg();
     }
     if left == 0 {
         return heirs;

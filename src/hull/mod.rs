@@ -181,6 +181,14 @@ impl Polytope for Hull {
         self.faces.polygon(face)[i].vertex.into()
     }
 
+    #[inline(always)]
+    fn four_corners(&self, face: FaceId, numbers: [usize; 4]) -> [Vec3; 4] {
+        let polygon = self.faces.polygon(face);
+        let [a, b, c, d] = numbers;
+        let corner = |i: usize| self.points[usize::from(polygon[i].vertex)];
+        [corner(a), corner(b), corner(c), corner(d)]
+    }
+
     #[inline]
     fn corners(&self, face: FaceId) -> impl Corners {
         let corners = self.faces.polygon(face).iter();

@@ -9,44 +9,46 @@
 
 mod clip;
 mod patch;
+mod polygon;
 mod reduce;
 
-use glam::{DVec2, DVec3};
+use glam::{DVec3, Vec2, Vec3};
+use wide::f32x4;
 
+use crate::pose::RelativePose;
 use crate::query::{Feature, Proximity};
 use crate::support::{Cso, Polytope};
-use clip::{ClipVertex, Polygons, Tag};
-use patch::{FacePlane, Patch};
+use clip::Polygons;
+use patch::{FacePlane, Frame, Patch};
+use polygon::LANES;
+use reduce::Candidates;
 
 /// More points than this add no stiffness to a rigid contact.
 pub const MAX_POINTS: usize = 4;
 
 /// Contacts nearer to each other than this share of the smaller shape's radius are one.
-const SAME_POINT: f64 = 1e-3;
+const SAME_POINT: f32 = 1e-3;
 
 /// A corner of the contact patch is as deep as the witness up to this share of the smaller
 /// shape's radius: the rounding of f32 face planes.
 const SAME_DEPTH: f64 = 2e-6;
-
-/// A corner outside of the other polygon by less than this share of the smaller shape's radius
-/// counts as inside: far above the rounding of f64, far below that of f32 coordinates.
-const CLIP_SLACK: f64 = 1e-9;
 
 /// Memory for manifolds, kept from one to the next so that none of them allocates.
 #[derive(Clone, Debug, Default)]
 pub struct ClipScratch {
     planes: [Vec<FacePlane>; 2],
     polygons: Polygons,
+    candidates: Candidates,
 }
 
-/// One contact: a point on each shape, on a line along the manifold's normal. In frame 1.
+/// One contact: a point on each shape, on a line along the manifold's normal.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactPoint {
-    /// On the first shape.
-    pub on_1: DVec3,
-    /// On the second shape.
-    pub on_2: DVec3,
-    /// `(on_2 - on_1) · normal`: negative where the shapes overlap.
+    /// On the first shape, in frame 1.
+    pub on_1: Vec3,
+    /// On the second shape, in frame 2.
+    pub on_2: Vec3,
+    /// From the first to the second along the normal: negative where the shapes overlap.
     pub distance: f64,
     /// What meets there.
     pub features: [Feature; 2],
@@ -74,10 +76,10 @@ impl Contacts {
 
     /// The witness alone.
     #[inline]
-    pub fn witness(proximity: &Proximity) -> Self {
+    pub fn witness(proximity: &Proximity, pose: &RelativePose) -> Self {
         let point = ContactPoint {
-            on_1: proximity.on_1,
-            on_2: proximity.on_2,
+            on_1: proximity.on_1.as_vec3(),
+            on_2: pose.point_to_2(proximity.on_2).as_vec3(),
             distance: proximity.signed_distance,
             features: proximity.features,
         };
@@ -105,35 +107,48 @@ pub fn contacts<A: Polytope, B: Polytope>(
     max_distance: f64,
     scratch: &mut ClipScratch,
 ) -> Contacts {
-    let mut contacts = Contacts::witness(proximity);
-    let ClipScratch { planes, polygons } = scratch;
+    let mut contacts = Contacts::witness(proximity, cso.pose);
+    let ClipScratch {
+        planes,
+        polygons,
+        candidates,
+    } = scratch;
     let Some(patch) = Patch::new(cso, proximity, proximity.normal, planes) else {
         return contacts;
     };
-    let scale = cso.smaller_radius();
-    let corners = patch.clip(cso, polygons, CLIP_SLACK * scale);
     // Along the query's normal nothing is deeper than the query's answer.
-    patch.measure(corners, proximity.signed_distance);
-    let (corners, beyond) = reduce::split(corners, max_distance);
-    let same = SAME_POINT * scale;
-    let mut first = DVec2::ZERO;
+    let least = proximity.signed_distance;
+    let scale = cso.smaller_radius();
+    patch.clip(cso, polygons);
+    let corners = &polygons.corners;
+    let distances = |_, x, y| patch.distances(x, y);
+    let range = f32::NEG_INFINITY..=(max_distance / scale) as f32;
+    let survey = candidates.set(corners, distances, range, SAME_POINT);
+    let contact = |corner, distance| {
+        let at = (corners.at(corner), polygons.tag(corner));
+        patch.contact(cso, at, distance, least)
+    };
+    let mut first = Vec2::ZERO;
     // Over two faces the distance is linear, so a corner is deepest. A witness that is no corner
     // and no deeper (somewhere inside of two parallel faces) must not take a corner's place.
-    if !corners.iter().any(|c| c.at.length_squared() <= same * same)
-        && let Some(deepest) = reduce::deepest(corners)
-        && deepest.distance <= contacts.points[0].distance + SAME_DEPTH * scale
+    if !survey.at_origin
+        && let Some(deepest) = survey.deepest
+        && f64::from(candidates.distance(deepest)) <= least / scale + SAME_DEPTH
     {
-        first = deepest.at;
-        contacts.points[0] = patch.contact(cso, deepest);
+        first = corners.at(deepest);
+        contacts.points[0] = contact(deepest, candidates.distance(deepest));
     }
-    for corner in reduce::spread(corners, first, same) {
-        contacts.push(patch.contact(cso, corner));
+    let spread = candidates.spread(corners, first, SAME_POINT);
+    for corner in spread.into_iter().flatten() {
+        contacts.push(contact(corner, candidates.distance(corner)));
     }
     if contacts.len < MAX_POINTS {
         contacts.push(contacts.points[0]);
     }
-    for corner in beyond.iter().take(MAX_POINTS - contacts.len) {
-        contacts.push(patch.contact(cso, corner));
+    while contacts.len < MAX_POINTS
+        && let Some(corner) = candidates.take_beyond()
+    {
+        contacts.push(contact(corner, candidates.distance(corner)));
     }
     contacts
 }
@@ -148,19 +163,26 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
     range: [f64; 2],
     scratch: &mut ClipScratch,
 ) -> Contacts {
-    let mut contacts = Contacts::witness(proximity);
+    let mut contacts = Contacts::witness(proximity, cso.pose);
     contacts.len = 0;
-    let ClipScratch { planes, polygons } = scratch;
-    if let Some(patch) = Patch::new(cso, proximity, normal, planes) {
-        let scale = cso.smaller_radius();
-        let corners = patch.clip(cso, polygons, CLIP_SLACK * scale);
-        patch.measure(corners, f64::NEG_INFINITY);
-        let corners = reduce::keep(corners, |c| (range[0]..=range[1]).contains(&c.distance));
-        if let Some(deepest) = reduce::deepest(corners) {
-            contacts.push(patch.contact(cso, deepest));
-            for corner in reduce::spread(corners, deepest.at, SAME_POINT * scale) {
-                contacts.push(patch.contact(cso, corner));
-            }
+    let ClipScratch {
+        planes,
+        polygons,
+        candidates,
+    } = scratch;
+    let Some(patch) = Patch::new(cso, proximity, normal, planes) else {
+        return contacts;
+    };
+    patch.clip(cso, polygons);
+    let corners = &polygons.corners;
+    let [least, most] = range.map(|distance| (distance / cso.smaller_radius()) as f32);
+    let distances = |_, x, y| patch.distances(x, y);
+    let survey = candidates.set(corners, distances, least..=most, SAME_POINT);
+    if let Some(deepest) = survey.deepest {
+        let spread = candidates.spread(corners, corners.at(deepest), SAME_POINT);
+        for corner in [Some(deepest)].into_iter().chain(spread).flatten() {
+            let at = (corners.at(corner), polygons.tag(corner));
+            contacts.push(patch.contact(cso, at, candidates.distance(corner), range[0]));
         }
     }
     contacts
@@ -170,11 +192,12 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
 /// `proximity`: corners of the face around it, those nearer than `max_distance` first.
 pub fn half_space_contacts(
     shape: &impl Polytope,
+    pose: &RelativePose,
     proximity: &Proximity,
     max_distance: f64,
     scratch: &mut ClipScratch,
 ) -> Contacts {
-    let mut contacts = Contacts::witness(proximity);
+    let mut contacts = Contacts::witness(proximity, pose);
     let (normal, origin) = (proximity.normal, proximity.on_1);
     let face = patch::facing(shape, proximity.features[0], normal);
     if shape.face_normal(face).dot(normal) <= patch::EDGE_ON {
@@ -185,8 +208,8 @@ pub fn half_space_contacts(
         let on_1 = shape.vertex(vertex);
         let distance = distance(on_1);
         ContactPoint {
-            on_1,
-            on_2: on_1 + normal * distance,
+            on_1: on_1.as_vec3(),
+            on_2: pose.point_to_2(on_1 + normal * distance).as_vec3(),
             distance,
             features: [Feature::Vertex(vertex), proximity.features[1]],
         }
@@ -202,38 +225,42 @@ pub fn half_space_contacts(
         }
         return contacts;
     }
-    let u = normal.any_orthonormal_vector();
-    let v = normal.cross(u);
-    let corners = &mut scratch.polygons.corners;
-    corners.clear();
-    corners.extend((0..count).map(|i| {
-        let corner = shape.vertex(corner(i));
-        let place = corner - origin;
-        ClipVertex {
-            at: DVec2::new(place.dot(u), place.dot(v)),
-            distance: distance(corner),
-            tag: Tag::Corner(i as u16),
-        }
-    }));
-    let (corners, beyond) = reduce::split(corners, max_distance);
-    let spread = reduce::spread(corners, DVec2::ZERO, SAME_POINT * shape.radius());
-    for vertex in spread.chain(beyond).take(MAX_POINTS - 1) {
-        if let Tag::Corner(i) = vertex.tag {
-            contacts.push(contact(corner(i.into())));
-        }
+    let scale = shape.radius();
+    let plane = Frame::new(origin, normal, scale).chart();
+    let ClipScratch {
+        polygons: Polygons {
+            window, corners, ..
+        },
+        candidates,
+        ..
+    } = scratch;
+    window.set(count, |numbers| {
+        plane.flatten(shape.four_corners(polygon, numbers))
+    });
+    corners.set(window);
+    let distances = |row: usize, _, _| {
+        let of = |lane: usize| shape.vertex(corner((row * LANES + lane).min(count - 1)));
+        f32x4::new([0, 1, 2, 3].map(|lane| (distance(of(lane)) / scale) as f32))
+    };
+    let range = f32::NEG_INFINITY..=(max_distance / scale) as f32;
+    candidates.set(corners, distances, range, SAME_POINT);
+    let spread = candidates.spread(corners, Vec2::ZERO, SAME_POINT);
+    let mut chosen = spread.into_iter().flatten();
+    while contacts.len < MAX_POINTS
+        && let Some(i) = chosen.next().or_else(|| candidates.take_beyond())
+    {
+        contacts.push(contact(corner(i)));
     }
     contacts
 }
 
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
     use parry3d::math::{Pose, Rotation};
 
     use super::*;
     use crate::epa::EpaScratch;
     use crate::hull::Hull;
-    use crate::pose::RelativePose;
     use crate::query::{Answer, Memory, Query};
     use crate::stats::Cost;
 
@@ -290,9 +317,12 @@ mod tests {
             let found = contacts(&cso, &near, 0.1, &mut ClipScratch::default());
             assert_eq!(found.as_slice().len(), MAX_POINTS);
             for contact in found.as_slice() {
-                let on_2 = pose.point_to_2(contact.on_2);
-                let off = distance_to(&shapes[0], contact.features[0], contact.on_1)
-                    .max(distance_to(&shapes[1], contact.features[1], on_2));
+                let [on_1, on_2] = [contact.on_1, contact.on_2].map(|p| p.as_dvec3());
+                let off = distance_to(&shapes[0], contact.features[0], on_1).max(distance_to(
+                    &shapes[1],
+                    contact.features[1],
+                    on_2,
+                ));
                 // A point between tilted faces leaves its vertex or edge by depth times tilt.
                 assert!(off < 1e-4, "{sides:?}: {contact:?} is {off} off");
             }

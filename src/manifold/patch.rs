@@ -1,9 +1,11 @@
 //! The two surfaces in contact, seen along the contact normal.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec3, Vec2, Vec3};
+use wide::f32x4;
 
 use super::ContactPoint;
-use super::clip::{self, ClipVertex, Polygons, Tag};
+use super::clip::{Polygons, Tag};
+use super::polygon::LANES;
 use crate::both::both;
 use crate::pose::RelativePose;
 use crate::query::{Feature, Proximity};
@@ -16,14 +18,19 @@ pub(super) const EDGE_ON: f64 = 0.05;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FacePlane {
     face: FaceId,
-    base: f64,
-    slope: DVec2,
+    base: f32,
+    slope: Vec2,
 }
 
 impl FacePlane {
-    #[inline]
-    fn height(&self, at: DVec2) -> f64 {
-        self.base + self.slope.dot(at)
+    #[inline(always)]
+    fn heights(&self, x: f32x4, y: f32x4) -> f32x4 {
+        x * self.slope.x + y * self.slope.y + self.base
+    }
+
+    #[inline(always)]
+    fn height(&self, at: Vec2) -> f32 {
+        at.x * self.slope.x + at.y * self.slope.y + self.base
     }
 }
 
@@ -35,13 +42,24 @@ struct Surface<'s> {
     /// Those of the other faces of the cap.
     more: &'s [FacePlane],
     /// Of the outward normal along the contact normal.
-    sign: f64,
+    sign: f32,
 }
 
 impl Surface<'_> {
-    /// The plane that is the surface there: of planes around a convex shape, the innermost.
-    #[inline]
-    fn plane_at(&self, at: DVec2) -> (f64, FaceId) {
+    /// Of planes around a convex shape, the innermost is the surface.
+    #[inline(always)]
+    fn heights(&self, x: f32x4, y: f32x4) -> f32x4 {
+        let mut heights = self.plane.heights(x, y);
+        for plane in self.more {
+            let others = plane.heights(x, y) * self.sign;
+            heights = others.fast_min(heights * self.sign) * self.sign;
+        }
+        heights
+    }
+
+    /// The height of the surface in one place, and the face that it is there.
+    #[inline(always)]
+    fn plane_at(&self, at: Vec2) -> (f32, FaceId) {
         let mut height = self.plane.height(at);
         let mut face = self.plane.face;
         for plane in self.more {
@@ -54,47 +72,107 @@ impl Surface<'_> {
     }
 }
 
-/// The contact plane, whose origin is the witness point of shape 1.
+/// The contact plane, whose origin is the witness point of shape 1. Its coordinates, and heights over
+/// it, are in units of `scale`: so f32 holds them for shapes of any size. It also holds them well enough:
+/// they are small beside the shapes' own coordinates, and errors are no larger than those of f32 vertices.
 #[derive(Clone, Copy)]
-struct Frame {
+pub(super) struct Frame {
     origin: DVec3,
     normal: DVec3,
     axes: [DVec3; 2],
+    scale: f64,
 }
 
 impl Frame {
+    #[inline(always)]
+    pub fn new(origin: DVec3, normal: DVec3, scale: f64) -> Self {
+        let u = normal.any_orthonormal_vector();
+        Self {
+            origin,
+            normal,
+            axes: [u, normal.cross(u)],
+            scale,
+        }
+    }
+
     /// The same plane in the frame of shape 2.
-    #[inline]
+    #[inline(always)]
     fn seen_from_2(&self, pose: &RelativePose) -> Self {
         Self {
             origin: pose.point_to_2(self.origin),
             normal: pose.direction_to_2(self.normal),
             axes: both(self.axes, |axis| pose.direction_to_2(axis)),
+            scale: self.scale,
         }
     }
 
-    #[inline]
-    fn flatten(&self, p: DVec3) -> DVec2 {
-        let p = p - self.origin;
-        DVec2::new(p.dot(self.axes[0]), p.dot(self.axes[1]))
+    #[inline(always)]
+    pub fn chart(&self) -> Chart {
+        let origin = self.origin.as_vec3();
+        Chart {
+            origin,
+            rest: (self.origin - origin.as_dvec3()).as_vec3(),
+            normal: self.normal.as_vec3(),
+            axes: both(self.axes, |axis| axis.as_vec3()),
+            scale: self.scale as f32,
+            per_scale: self.scale.recip() as f32,
+        }
     }
 
     /// A face whose outward normal is `outward` in this frame's space and whose plane is `offset`
     /// beyond the origin; none if it is seen from behind or edge-on.
-    #[inline]
-    fn plane(&self, face: FaceId, outward: DVec3, offset: f64, sign: f64) -> Option<FacePlane> {
+    #[inline(always)]
+    fn plane(&self, face: FaceId, outward: DVec3, offset: f64, sign: f32) -> Option<FacePlane> {
         let along = outward.dot(self.normal);
-        (along * sign > EDGE_ON).then(|| FacePlane {
+        let slope = |axis| (-outward.dot(axis) / along) as f32;
+        (along * f64::from(sign) > EDGE_ON).then(|| FacePlane {
             face,
-            base: offset / along,
-            slope: -DVec2::new(outward.dot(self.axes[0]), outward.dot(self.axes[1])) / along,
+            base: (offset / (along * self.scale)) as f32,
+            slope: Vec2::from(both(self.axes, slope)),
         })
+    }
+}
+
+/// Between a shape's space and the contact plane, in f32.
+#[derive(Clone, Copy)]
+pub(super) struct Chart {
+    /// The plane's origin in two parts: what f32 holds of it, and the rest. So what is near loses
+    /// nothing where the shape is large.
+    origin: Vec3,
+    rest: Vec3,
+    normal: Vec3,
+    axes: [Vec3; 2],
+    /// The plane's unit of length.
+    scale: f32,
+    per_scale: f32,
+}
+
+impl Chart {
+    /// Four points into the plane, coordinate by coordinate.
+    #[inline(always)]
+    pub fn flatten(&self, points: [Vec3; LANES]) -> [f32x4; 2] {
+        let [a, b, c, d] = points;
+        let from_origin = |p: [f32; LANES], origin: f32, rest: f32| f32x4::new(p) - origin - rest;
+        let x = from_origin([a.x, b.x, c.x, d.x], self.origin.x, self.rest.x);
+        let y = from_origin([a.y, b.y, c.y, d.y], self.origin.y, self.rest.y);
+        let z = from_origin([a.z, b.z, c.z, d.z], self.origin.z, self.rest.z);
+        both(self.axes, |axis| {
+            (x * axis.x + y * axis.y + z * axis.z) * self.per_scale
+        })
+    }
+
+    /// The point over a place in the plane.
+    #[inline(always)]
+    fn point(&self, at: Vec2, height: f32) -> Vec3 {
+        let [u, v] = self.axes;
+        self.origin + ((u * at.x + v * at.y + self.normal * height) * self.scale + self.rest)
     }
 }
 
 /// Both surfaces over the contact plane.
 pub(super) struct Patch<'s> {
-    frame: Frame,
+    /// From the spaces of both shapes.
+    charts: [Chart; 2],
     surfaces: [Surface<'s>; 2],
 }
 
@@ -105,12 +183,7 @@ impl<'s> Patch<'s> {
         normal: DVec3,
         [more_1, more_2]: &'s mut [Vec<FacePlane>; 2],
     ) -> Option<Self> {
-        let u = normal.any_orthonormal_vector();
-        let frame = Frame {
-            origin: proximity.on_1,
-            normal,
-            axes: [u, normal.cross(u)],
-        };
+        let frame = Frame::new(proximity.on_1, normal, cso.smaller_radius());
         let plane_1 = |face| {
             let outward = cso.shape_1.face_normal(face);
             let offset = cso.shape_1.face_offset(face) - outward.dot(frame.origin);
@@ -129,72 +202,67 @@ impl<'s> Patch<'s> {
             surface(cso.shape_1, f1, 1.0, plane_1, more_1)?,
             surface(cso.shape_2, f2, -1.0, plane_2, more_2)?,
         ];
-        Some(Self { frame, surfaces })
+        let charts = [frame.chart(), frame.seen_from_2(cso.pose).chart()];
+        Some(Self { charts, surfaces })
     }
 
     /// The corners of the intersection of both polygons.
     #[inline]
-    pub fn clip<'p, A: Polytope, B: Polytope>(
-        &self,
-        cso: &Cso<'_, A, B>,
-        polygons: &'p mut Polygons,
-        slack: f64,
-    ) -> &'p mut [ClipVertex] {
+    pub fn clip<A: Polytope, B: Polytope>(&self, cso: &Cso<'_, A, B>, polygons: &mut Polygons) {
         let [f1, f2] = self.polygons();
-        let frame_2 = self.frame.seen_from_2(cso.pose);
-        let window = cso.shape_1.corners(f1).map(|p| self.frame.flatten(p));
-        polygons.window.clear();
-        polygons.window.extend(window);
-        let subject = cso.shape_2.corners(f2).map(|p| frame_2.flatten(p));
-        polygons.subject.clear();
-        polygons.subject.extend(subject);
-        clip::intersect(polygons, slack)
+        let (shape_1, shape_2) = (cso.shape_1, cso.shape_2);
+        let [chart_1, chart_2] = &self.charts;
+        polygons.window.set(shape_1.face_len(f1), |numbers| {
+            chart_1.flatten(shape_1.four_corners(f1, numbers))
+        });
+        polygons.subject.set(shape_2.face_len(f2), |numbers| {
+            chart_2.flatten(shape_2.four_corners(f2, numbers))
+        });
+        polygons.intersect();
     }
 
-    /// Fills in the distances of `corners`, none of which is below `least`.
-    #[inline]
-    pub fn measure(&self, corners: &mut [ClipVertex], least: f64) {
-        for corner in corners {
-            let [h1, h2] = self.heights(corner.at);
-            corner.distance = (h2 - h1).max(least);
-        }
+    /// From the first surface to the second.
+    #[inline(always)]
+    pub fn distances(&self, x: f32x4, y: f32x4) -> f32x4 {
+        self.surfaces[1].heights(x, y) - self.surfaces[0].heights(x, y)
     }
 
+    /// The contact at a corner of the intersection, where the surfaces are `distance` apart, but not
+    /// less than `least`.
     #[inline]
     pub fn contact<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
-        vertex: &ClipVertex,
+        (at, tag): (Vec2, Tag),
+        distance: f32,
+        least: f64,
     ) -> ContactPoint {
-        let Frame {
-            origin,
-            normal,
-            axes: [u, v],
-        } = self.frame;
-        let foot = origin + u * vertex.at.x + v * vertex.at.y;
-        let on_1 = foot + normal * self.surfaces[0].plane_at(vertex.at).0;
+        let [s1, s2] = both([0, 1], |side| self.surfaces[side].plane_at(at));
+        let scale = f64::from(self.charts[0].scale);
+        let distance = (f64::from(distance) * scale).max(least);
+        let [chart_1, chart_2] = &self.charts;
         ContactPoint {
-            on_1,
-            on_2: on_1 + normal * vertex.distance,
-            distance: vertex.distance,
-            features: self.features(cso, vertex),
+            on_1: chart_1.point(at, s1.0),
+            on_2: chart_2.point(at, s1.0 + distance as f32 * chart_1.per_scale),
+            distance,
+            features: self.features(cso, tag, [s1.1, s2.1]),
         }
     }
 
-    /// What meets at a corner of the intersection.
+    /// What meets at a corner of the intersection, at which the surfaces are these faces.
     #[inline]
-    pub fn features<A: Polytope, B: Polytope>(
+    fn features<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
-        vertex: &ClipVertex,
+        tag: Tag,
+        faces: [FaceId; 2],
     ) -> [Feature; 2] {
         let [f1, f2] = self.polygons();
         let corner_1 = |i: u16| Feature::Vertex(cso.shape_1.face_vertex(f1, i.into()));
         let corner_2 = |i: u16| Feature::Vertex(cso.shape_2.face_vertex(f2, i.into()));
-        let face = |side: usize| Feature::Face(self.surfaces[side].plane_at(vertex.at).1);
-        match vertex.tag {
-            Tag::Corner(i) => [face(0), corner_2(i)],
-            Tag::Window(i) => [corner_1(i), face(1)],
+        match tag {
+            Tag::Corner(i) => [Feature::Face(faces[0]), corner_2(i)],
+            Tag::Window(i) => [corner_1(i), Feature::Face(faces[1])],
             Tag::Crossing(i, j) => [
                 edge_of(cso.shape_1, f1, i.into()),
                 edge_of(cso.shape_2, f2, j.into()),
@@ -205,15 +273,6 @@ impl<'s> Patch<'s> {
     #[inline]
     fn polygons(&self) -> [FaceId; 2] {
         [self.surfaces[0].polygon, self.surfaces[1].polygon]
-    }
-
-    /// The heights of both surfaces at a place in the contact plane.
-    #[inline]
-    fn heights(&self, at: DVec2) -> [f64; 2] {
-        [
-            self.surfaces[0].plane_at(at).0,
-            self.surfaces[1].plane_at(at).0,
-        ]
     }
 }
 
@@ -252,7 +311,7 @@ fn plane_of_2<A: Polytope, B: Polytope>(
 fn surface<'s>(
     shape: &impl Polytope,
     face: FaceId,
-    sign: f64,
+    sign: f32,
     plane: impl Fn(FaceId) -> Option<FacePlane>,
     more: &'s mut Vec<FacePlane>,
 ) -> Option<Surface<'s>> {

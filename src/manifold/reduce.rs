@@ -1,102 +1,192 @@
-//! Which corners of the contact patch to keep.
+//! Which corners of the contact patch to keep. They are looked at in fours.
 
-use glam::DVec2;
+use std::ops::RangeInclusive;
+
+use glam::Vec2;
+use wide::f32x4;
 
 use super::MAX_POINTS;
-use super::clip::ClipVertex;
+use super::clip::Corners;
+use super::polygon::{LANES, lanes};
 
-/// The corners up to a distance, and those beyond it, the nearest of these first.
-#[inline]
-pub(super) fn split(
-    corners: &mut [ClipVertex],
-    max_distance: f64,
-) -> (&[ClipVertex], &[ClipVertex]) {
-    let near = partition(corners, |corner| corner.distance <= max_distance);
-    let (near, beyond) = corners.split_at_mut(near);
-    beyond.sort_unstable_by(|a, b| a.distance.total_cmp(&b.distance));
-    (near, beyond)
+/// Corners to choose from, by their numbers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Candidates(Vec<Four>);
+
+/// Four corners; some of the last ones are none.
+#[derive(Clone, Copy, Debug)]
+struct Four {
+    x: f32x4,
+    y: f32x4,
+    /// From the first face to the second, along the contact normal.
+    distance: f32x4,
+    /// A mask of those within the wanted range.
+    near: f32x4,
+    /// A mask of those beyond it.
+    beyond: f32x4,
 }
 
-/// The wanted corners, in their order.
-pub(super) fn keep(
-    corners: &mut [ClipVertex],
-    wanted: impl Fn(&ClipVertex) -> bool,
-) -> &[ClipVertex] {
-    let count = partition(corners, wanted);
-    &corners[..count]
+/// What there is to choose from.
+pub(super) struct Survey {
+    /// The corner where the faces are nearest or overlap most.
+    pub deepest: Option<usize>,
+    /// Whether one is at the origin of the contact plane.
+    pub at_origin: bool,
 }
 
-/// Brings the wanted corners to the front, in their order, and counts them.
-#[inline]
-fn partition(corners: &mut [ClipVertex], wanted: impl Fn(&ClipVertex) -> bool) -> usize {
-    let mut count = 0;
-    for i in 0..corners.len() {
-        let is_wanted = wanted(&corners[i]);
-        corners.swap(count, i);
-        count += usize::from(is_wanted);
+/// The greatest of many measures, of those that tie the first in the lowest lane.
+struct Greatest {
+    measures: f32x4,
+    /// The row of each, as bits.
+    rows: f32x4,
+}
+
+/// The bits of no row.
+const NOWHERE: u32 = u32::MAX;
+
+impl Greatest {
+    /// Above `least`.
+    #[inline(always)]
+    fn above(least: f32) -> Self {
+        Self {
+            measures: f32x4::splat(least),
+            rows: f32x4::splat(f32::from_bits(NOWHERE)),
+        }
     }
-    count
+
+    /// Looks at the measures of a row, those in the `wanted` lanes.
+    #[inline(always)]
+    fn look_at(&mut self, row: usize, measures: f32x4, wanted: f32x4) {
+        let greater = measures.simd_gt(self.measures) & wanted;
+        let row = f32x4::splat(f32::from_bits(row as u32));
+        self.measures = greater.bitselect(measures, self.measures);
+        self.rows = greater.bitselect(row, self.rows);
+    }
+
+    /// The number of the corner that it is of.
+    #[inline(always)]
+    fn corner(self) -> Option<usize> {
+        let measures = self.measures.to_array();
+        let greater = |a: usize, b: usize| if measures[b] > measures[a] { b } else { a };
+        let lane = greater(greater(0, 1), greater(2, 3));
+        let row = self.rows.to_array()[lane].to_bits();
+        (row != NOWHERE).then_some(row as usize * LANES + lane)
+    }
 }
 
-/// The corner where the faces are nearest or overlap most.
-#[inline]
-pub(super) fn deepest(corners: &[ClipVertex]) -> Option<&ClipVertex> {
-    corners
-        .iter()
-        .min_by(|a, b| a.distance.total_cmp(&b.distance))
-}
+impl Candidates {
+    /// Becomes these corners, with the `distances` of a row at its places. Those whose distance is within `range` are wanted, those beyond it come
+    /// last, and those before it are none. What is nearer than `same` to the origin is there.
+    #[inline(always)]
+    pub fn set(
+        &mut self,
+        corners: &Corners,
+        distances: impl Fn(usize, f32x4, f32x4) -> f32x4,
+        range: RangeInclusive<f32>,
+        same: f32,
+    ) -> Survey {
+        self.0.clear();
+        let (least, most) = (f32x4::splat(*range.start()), f32x4::splat(*range.end()));
+        let mut deepest = Greatest::above(f32::NEG_INFINITY);
+        let mut at_origin = f32x4::ZERO;
+        for (row, [x, y]) in corners.fours().enumerate() {
+            let left = corners.count - row * LANES;
+            let there = lanes((1 << left.min(LANES)) - 1);
+            let distance = distances(row, x, y);
+            let there = there & distance.simd_ge(least);
+            let near = there & distance.simd_le(most);
+            deepest.look_at(row, -distance, near);
+            at_origin |= near & (x * x + y * y).simd_le(f32x4::splat(same * same));
+            self.0.push(Four {
+                x,
+                y,
+                distance,
+                near,
+                beyond: there ^ near,
+            });
+        }
+        Survey {
+            deepest: deepest.corner(),
+            at_origin: at_origin.any(),
+        }
+    }
 
-/// Corners that, with the contact at `first`, span a large area: the farthest from it, the
-/// farthest from the line through both, and the farthest on its other side. None of them is
-/// nearer than `same` to another.
-pub(super) fn spread(
-    corners: &[ClipVertex],
-    first: DVec2,
-    same: f64,
-) -> impl Iterator<Item = &ClipVertex> {
-    let mut chosen: [Option<&ClipVertex>; MAX_POINTS - 1] = [None; MAX_POINTS - 1];
-    if let Some(far) = best(corners, same * same, |p| p.distance_squared(first)) {
-        let line = far.at - first;
+    /// The distance of the faces at a corner.
+    #[inline(always)]
+    pub fn distance(&self, corner: usize) -> f32 {
+        self.0[corner / LANES].distance.as_array()[corner % LANES]
+    }
+
+    /// The nearest of the corners beyond the range, which is then no longer among them.
+    #[inline(always)]
+    pub fn take_beyond(&mut self) -> Option<usize> {
+        let mut nearest = Greatest::above(f32::NEG_INFINITY);
+        for (row, four) in self.0.iter().enumerate() {
+            nearest.look_at(row, -four.distance, four.beyond);
+        }
+        let corner = nearest.corner()?;
+        self.0[corner / LANES].beyond &= lanes(!(1 << (corner % LANES)));
+        Some(corner)
+    }
+
+    /// Corners that, with the contact at `first`, span a large area: the farthest from it, the
+    /// farthest from the line through both, and the farthest on its other side. None of them is
+    /// nearer than `same` to another.
+    #[inline(always)]
+    pub fn spread(
+        &self,
+        corners: &Corners,
+        first: Vec2,
+        same: f32,
+    ) -> [Option<usize>; MAX_POINTS - 1] {
+        let Some(far) = self.greatest(first, same * same, |x, y| x * x + y * y) else {
+            return [None; MAX_POINTS - 1];
+        };
+        let line = corners.at(far) - first;
         // Areas over the line are heights times its length.
         let least = same * line.length();
-        let left = best(corners, least, |p| line.perp_dot(p - first));
-        let right = best(corners, least, |p| -line.perp_dot(p - first));
-        chosen = [Some(far), left, right];
-        // A patch on one side of the line: the last corner adds most area to the triangle.
-        if let (Some(side), None) | (None, Some(side)) = (left, right) {
-            let third = best(corners, least, |p| {
-                added_area(p - first, line, side.at - first)
-            });
-            chosen = [Some(far), Some(side), third];
+        let [mut left, mut right] = [Greatest::above(least), Greatest::above(least)];
+        for (row, four) in self.0.iter().enumerate() {
+            let area = (four.y - first.y) * line.x - (four.x - first.x) * line.y;
+            left.look_at(row, area, four.near);
+            right.look_at(row, -area, four.near);
+        }
+        match (left.corner(), right.corner()) {
+            // A patch on one side of the line: the last corner adds most area to the triangle.
+            (Some(side), None) | (None, Some(side)) => {
+                let apex = corners.at(side) - first;
+                let third = self.greatest(first, least, |x, y| added_area(x, y, line, apex));
+                [Some(far), Some(side), third]
+            }
+            (left, right) => [Some(far), left, right],
         }
     }
-    chosen.into_iter().flatten()
+
+    /// The corner with the greatest measure above `least`; its place is that from `first`.
+    #[inline(always)]
+    fn greatest(
+        &self,
+        first: Vec2,
+        least: f32,
+        measure: impl Fn(f32x4, f32x4) -> f32x4,
+    ) -> Option<usize> {
+        let mut greatest = Greatest::above(least);
+        for (row, four) in self.0.iter().enumerate() {
+            let measures = measure(four.x - first.x, four.y - first.y);
+            greatest.look_at(row, measures, four.near);
+        }
+        greatest.corner()
+    }
 }
 
-/// Twice the area that `p` adds to the triangle of the origin, `a` and `b` beyond one of its two
+/// Twice the area that points add to the triangle of the origin, `a` and `b` beyond one of its two
 /// edges at `b`.
-#[inline]
-fn added_area(p: DVec2, a: DVec2, b: DVec2) -> f64 {
-    let beyond_ab = -(b - a).perp_dot(p - a);
-    let beyond_bo = b.perp_dot(p);
-    if a.perp_dot(b) > 0.0 {
-        beyond_ab.max(beyond_bo)
-    } else {
-        -beyond_ab.min(beyond_bo)
-    }
-}
-
-/// The corner with the greatest measure above `least`.
-#[inline]
-fn best(corners: &[ClipVertex], least: f64, measure: impl Fn(DVec2) -> f64) -> Option<&ClipVertex> {
-    let mut best = None;
-    let mut greatest = least;
-    for corner in corners {
-        let m = measure(corner.at);
-        if m > greatest {
-            greatest = m;
-            best = Some(corner);
-        }
-    }
-    best
+#[inline(always)]
+fn added_area(x: f32x4, y: f32x4, a: Vec2, b: Vec2) -> f32x4 {
+    // Positive beyond the edges, if the triangle is counter-clockwise.
+    let turn = if a.perp_dot(b) > 0.0 { 1.0 } else { -1.0 };
+    let (ab, bo) = ((b - a) * turn, b * turn);
+    let beyond_ab = (x - a.x) * ab.y - (y - a.y) * ab.x;
+    let beyond_bo = y * bo.x - x * bo.y;
+    beyond_ab.fast_max(beyond_bo)
 }

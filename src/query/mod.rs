@@ -130,7 +130,7 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
 
     /// Whether the balls around the shapes are too far apart already: no vertex is looked at. What
     /// was remembered of the vertices stays.
-    #[inline]
+    #[inline(always)]
     fn test_balls(&self, memory: &Memory) -> Option<SeparatingAxis> {
         let (axis, separation) = self.cso.test_balls(self.max_distance)?;
         Some(SeparatingAxis {
@@ -162,9 +162,15 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     /// Answers from `memory` where that is possible, cold otherwise. `None` only if the shapes
     /// have no volume between them or are not finite.
     pub fn run(&mut self, memory: &Memory) -> Option<(Answer, Stage)> {
-        if let Some(apart) = self.test_balls(memory) {
-            return Some((Answer::Apart(apart), Stage::Balls));
+        match self.test_balls(memory) {
+            Some(apart) => Some((Answer::Apart(apart), Stage::Balls)),
+            None => self.run_near(memory),
         }
+    }
+
+    /// As [`run`](Self::run), of a pair whose balls are known not to be too far apart.
+    #[inline(always)]
+    pub(crate) fn run_near(&mut self, memory: &Memory) -> Option<(Answer, Stage)> {
         match *memory {
             Memory::None => {
                 let axis = self.cso.towards_origin();

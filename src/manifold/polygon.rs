@@ -1,0 +1,181 @@
+//! Polygons in the contact plane, in rows of four corners.
+
+use glam::Vec2;
+use wide::f32x4;
+
+/// Corners are looked at in fours: most faces have no more.
+pub(super) const LANES: usize = 4;
+
+/// The bits of all lanes.
+pub(super) const ALL: u32 = (1 << LANES) - 1;
+
+/// What lies outside of a side by less than this share of the side's extent, and of its distance from
+/// the contact plane's origin, counts as inside: four roundings of the coordinates. So corners that meet
+/// up to rounding are never lost.
+const SLACK: f32 = 4.0 * f32::EPSILON;
+
+/// A polygon; its last row is filled up with its last corner.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Polygon {
+    pub count: usize,
+    pub rows: Vec<Row>,
+}
+
+/// Four corners, and the sides from each of them to the next. Those of what fills up have no length.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row {
+    pub x: f32x4,
+    pub y: f32x4,
+    along_x: f32x4,
+    along_y: f32x4,
+    /// How far below the sides still counts as inside, as heights that are multiplied by their lengths.
+    slack: f32x4,
+    /// Which corners are inside of all of the other polygon's sides so far.
+    pub inside: f32x4,
+}
+
+impl Polygon {
+    /// Becomes the polygon of so many corners, which `corners` has in fours from any first one.
+    #[inline(always)]
+    pub fn set(&mut self, count: usize, corners: impl Fn([usize; LANES]) -> [f32x4; 2]) {
+        let last = count - 1;
+        self.count = count;
+        self.rows.clear();
+        for first in (0..count).step_by(LANES) {
+            let numbers = [first, first + 1, first + 2, first + 3].map(|i| i.min(last));
+            let [x, y] = corners(numbers);
+            self.rows.push(Row::of_corners(x, y));
+        }
+        let start = self.rows[0].first();
+        for r in 0..self.rows.len() {
+            let next = self.rows.get(r + 1).map(Row::first);
+            let end = LANES.min(count - r * LANES);
+            self.rows[r].add_sides(next.unwrap_or(start), end);
+        }
+    }
+
+    /// The number of corners with those that fill up.
+    #[inline(always)]
+    pub fn width(&self) -> usize {
+        LANES * self.rows.len()
+    }
+
+    /// The bits of those corners of a row that do not fill up.
+    #[inline(always)]
+    pub fn real(&self, row: usize) -> u32 {
+        ALL >> LANES.saturating_sub(self.count - LANES * row)
+    }
+}
+
+impl Row {
+    #[inline(always)]
+    fn of_corners(x: f32x4, y: f32x4) -> Self {
+        Self {
+            x,
+            y,
+            along_x: f32x4::ZERO,
+            along_y: f32x4::ZERO,
+            slack: f32x4::ZERO,
+            inside: lanes(ALL),
+        }
+    }
+
+    #[inline(always)]
+    fn first(&self) -> Vec2 {
+        Vec2::new(self.x.to_array()[0], self.y.to_array()[0])
+    }
+
+    /// Adds the sides of the first `count` corners, of which the last one's ends at `next`.
+    #[inline(always)]
+    fn add_sides(&mut self, next: Vec2, count: usize) {
+        let [from_x, from_y] = [self.x, self.y].map(f32x4::to_array);
+        let (last, filling) = (lanes(1 << (count - 1)), lanes(ALL & ALL << count));
+        let to = |from: f32x4, [_, b, c, d]: [f32; LANES], next: f32| {
+            let to = last.bitselect(f32x4::splat(next), f32x4::new([b, c, d, d]));
+            filling.bitselect(from, to) - from
+        };
+        self.along_x = to(self.x, from_x, next.x);
+        self.along_y = to(self.y, from_y, next.y);
+        // The sum of coordinates is not shorter.
+        let length = self.along_x.abs() + self.along_y.abs();
+        self.slack = (length + self.x.abs() + self.y.abs()) * length * SLACK;
+    }
+
+    /// Whether a point is inside of these sides of a clockwise polygon.
+    #[inline(always)]
+    pub fn holds(&self, x: f32x4, y: f32x4) -> bool {
+        let heights = (x - self.x) * self.along_y - (y - self.y) * self.along_x;
+        heights.simd_ge(-self.slack).all()
+    }
+}
+
+/// A side of a polygon, in all lanes.
+pub(super) struct Side {
+    pub x: f32x4,
+    pub y: f32x4,
+    along_x: f32x4,
+    along_y: f32x4,
+    slack: f32x4,
+}
+
+/// Where sides cross: those with bits.
+pub(super) struct Crossings {
+    pub x: f32x4,
+    pub y: f32x4,
+    pub there: u32,
+}
+
+impl Side {
+    /// That of a corner in a row.
+    #[inline(always)]
+    pub fn new(row: &Row, lane: usize) -> Self {
+        let of_lane = |row: &f32x4| f32x4::splat(row.as_array()[lane]);
+        Self {
+            x: of_lane(&row.x),
+            y: of_lane(&row.y),
+            along_x: of_lane(&row.along_x),
+            along_y: of_lane(&row.along_y),
+            slack: of_lane(&row.slack),
+        }
+    }
+
+    /// Strikes the other polygon's corners below this side from those inside, and tells where its sides
+    /// cross this one.
+    #[inline(always)]
+    pub fn cut(&self, other: &mut Row) -> Crossings {
+        let (from_x, from_y) = (other.x - self.x, other.y - self.y);
+        let (to_x, to_y) = (from_x + other.along_x, from_y + other.along_y);
+        let from = from_y * self.along_x - from_x * self.along_y;
+        let to = to_y * self.along_x - to_x * self.along_y;
+        other.inside &= from.simd_ge(-self.slack);
+        let crosses = from.simd_lt(f32x4::ZERO) ^ to.simd_lt(f32x4::ZERO);
+        let share = from / (from - to);
+        let x = from_x + other.along_x * share;
+        let y = from_y + other.along_y * share;
+        // Along the side, from 0 to its length squared.
+        let place = x * self.along_x + y * self.along_y;
+        let end = self.along_x * self.along_x + self.along_y * self.along_y + self.slack;
+        let on_side = place.simd_ge(-self.slack) & place.simd_le(end);
+        Crossings {
+            x: self.x + x,
+            y: self.y + y,
+            there: (crosses & on_side).to_bitmask(),
+        }
+    }
+}
+
+/// A mask of the lanes whose bits are set.
+#[inline(always)]
+pub(super) fn lanes(bits: u32) -> f32x4 {
+    const MASKS: [[u32; LANES]; 1 << LANES] = {
+        let mut masks = [[0; LANES]; 1 << LANES];
+        let mut i = 0;
+        while i < masks.len() * LANES {
+            let (bits, lane) = (i / LANES, i % LANES);
+            masks[bits][lane] = if bits >> lane & 1 == 1 { u32::MAX } else { 0 };
+            i += 1;
+        }
+        masks
+    };
+    bytemuck::cast(MASKS[(bits & ALL) as usize])
+}
