@@ -142,7 +142,25 @@ pub fn test_axis<A: Support, B: Support>(
     beyond: f64,
     cost: &mut Cost,
 ) -> Result<SeparatingAxis, CsoVertex> {
-    let vertex = cso.support(axis, start, cost);
+    let (on_2, id_2) = cso.support_2(axis, start[1], cost);
+    // The ball around shape 1 may do: then none of its vertices is looked at. The axis may be longer
+    // than 1 by its rounding; half of 1 and its square is not less than its length.
+    let longest = 0.5 + 0.5 * axis.length_squared();
+    let reach_1 = axis.dot(cso.shape_1.center()) + cso.shape_1.radius() * longest;
+    let separation = axis.dot(on_2) - reach_1;
+    if separation > beyond {
+        return Ok(SeparatingAxis {
+            axis,
+            separation,
+            ids: [start[0], id_2],
+        });
+    }
+    let (on_1, id_1) = cso.shape_1.support(axis, start[0], cost);
+    let vertex = CsoVertex {
+        w: on_1 - on_2,
+        on_1,
+        ids: [id_1, id_2],
+    };
     let separation = -axis.dot(vertex.w);
     if separation > beyond {
         Ok(SeparatingAxis {

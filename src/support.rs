@@ -148,14 +148,20 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
     #[inline(always)]
     pub fn support(&self, dir: DVec3, start: [VertexId; 2], cost: &mut Cost) -> CsoVertex {
         let (on_1, id_1) = self.shape_1.support(dir, start[0], cost);
-        let (on_2, id_2) = self
-            .shape_2
-            .support(-self.pose.direction_to_2(dir), start[1], cost);
+        let (on_2, id_2) = self.support_2(dir, start[1], cost);
         CsoVertex {
-            w: on_1 - self.pose.point_to_1(on_2),
+            w: on_1 - on_2,
             on_1,
             ids: [id_1, id_2],
         }
+    }
+
+    /// The point of shape 2 of which the difference is extreme in direction `dir`, in frame 1.
+    #[inline(always)]
+    pub fn support_2(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
+        let dir = -self.pose.direction_to_2(dir);
+        let (on_2, id_2) = self.shape_2.support(dir, start, cost);
+        (self.pose.point_to_1(on_2), id_2)
     }
 
     /// The difference of two vertices.
