@@ -1,12 +1,12 @@
 //! The points of a manifold, and what they inherit from those of the frame before.
 
+use glam::Vec3;
 use parry3d::math::Real;
 use parry3d::query::{ContactManifold, TrackedContact};
-use wide::u32x4;
+use wide::{f32x4, u32x4};
 
 use super::cache;
-use crate::both::both;
-use crate::manifold::{ContactPoint, Contacts, MAX_POINTS};
+use crate::manifold::{Contacts, MAX_POINTS};
 
 /// Replaces the manifold's points, and hands the data (the solver's impulses) of the old ones on.
 ///
@@ -19,23 +19,27 @@ pub(super) fn write_points<M, C: Default + Copy>(
     swapped: bool,
 ) {
     let normals = cache::ordered([manifold.local_n1, manifold.local_n2], swapped);
-    let [to_border_1, to_border_2] = [0, 1].map(|side| normals[side] * borders[side] as Real);
-    let count = contacts.as_slice().len();
-    let place = |contact: &ContactPoint| {
-        let points = [contact.on_1 + to_border_1, contact.on_2 + to_border_2];
-        let [local_p1, local_p2] = cache::ordered(points, swapped);
-        let [fid1, fid2] = cache::ordered(both(contact.features, cache::pack), swapped);
+    let at_border = |points: &[f32x4; 3], side: usize| {
+        let border = normals[side] * borders[side] as Real;
+        [0, 1, 2].map(|axis| (points[axis] + border[axis]).to_array())
+    };
+    let points = [at_border(&contacts.on_1, 0), at_border(&contacts.on_2, 1)];
+    let distances = (contacts.distance - (borders[0] + borders[1]) as Real).to_array();
+    let (side_1, side_2) = (usize::from(swapped), usize::from(!swapped));
+    let place = |lane: usize| {
+        let point = |side: usize| Vec3::from(points[side].map(|row| row[lane]));
+        let fid = |side: usize| cache::pack(contacts.features[lane][side]);
         TrackedContact {
-            local_p1,
-            local_p2,
-            dist: (contact.distance - borders[0] - borders[1]) as Real,
-            fid1,
-            fid2,
+            local_p1: point(side_1),
+            local_p2: point(side_2),
+            dist: distances[lane],
+            fid1: fid(side_1),
+            fid2: fid(side_2),
             data: (),
         }
     };
-    let [a, b, c, d] = contacts.padded();
-    let places = [place(a), place(b), place(c), place(d)];
+    let count = contacts.len;
+    let places = [place(0), place(1), place(2), place(3)];
     let tracked = &mut manifold.points;
     let old = Identities::of(tracked);
     let new = Identities::of(&places[..count]);

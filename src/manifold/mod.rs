@@ -8,23 +8,22 @@
 //! manifold's deepest point is the query's answer.
 
 mod clip;
+mod contacts;
+mod half_space;
 mod patch;
 mod polygon;
 mod reduce;
 
-use glam::{DVec3, Vec2, Vec3};
-use wide::f32x4;
+use glam::{DVec3, Vec2};
 
-use crate::pose::RelativePose;
-use crate::query::{Feature, Proximity};
+use crate::query::Proximity;
 use crate::support::{Cso, Polytope};
 use clip::Polygons;
-use patch::{FacePlane, Frame, Patch};
-use polygon::LANES;
+use patch::{FacePlane, Patch};
 use reduce::Candidates;
 
-/// More points than this add no stiffness to a rigid contact.
-pub const MAX_POINTS: usize = 4;
+pub use contacts::{ContactPoint, Contacts, MAX_POINTS};
+pub use half_space::half_space_contacts;
 
 /// Contacts nearer to each other than this share of the smaller shape's radius are one.
 const SAME_POINT: f32 = 1e-3;
@@ -41,57 +40,17 @@ pub struct ClipScratch {
     candidates: Candidates,
 }
 
-/// One contact: a point on each shape, on a line along the manifold's normal.
-#[derive(Clone, Copy, Debug)]
-pub struct ContactPoint {
-    /// On the first shape, in frame 1.
-    pub on_1: Vec3,
-    /// On the second shape, in frame 2.
-    pub on_2: Vec3,
-    /// From the first to the second along the normal: negative where the shapes overlap.
-    pub distance: f64,
-    /// What meets there.
-    pub features: [Feature; 2],
-}
-
-/// Up to four contacts with one normal.
-#[derive(Clone, Copy, Debug)]
-pub struct Contacts {
-    points: [ContactPoint; MAX_POINTS],
+/// Which corners of the contact patch become contacts; `None` is the witness of the query.
+#[derive(Default)]
+struct Chosen {
+    corners: [Option<usize>; MAX_POINTS],
     len: usize,
 }
 
-impl Contacts {
-    /// The contacts; the witness of the query comes first.
-    #[inline]
-    pub fn as_slice(&self) -> &[ContactPoint] {
-        &self.points[..self.len]
-    }
-
-    /// As many contacts as there can be: those, and others that mean nothing.
-    #[inline]
-    pub(crate) fn padded(&self) -> &[ContactPoint; MAX_POINTS] {
-        &self.points
-    }
-
-    /// The witness alone.
-    #[inline]
-    pub fn witness(proximity: &Proximity, pose: &RelativePose) -> Self {
-        let point = ContactPoint {
-            on_1: proximity.on_1.as_vec3(),
-            on_2: pose.point_to_2(proximity.on_2).as_vec3(),
-            distance: proximity.signed_distance,
-            features: proximity.features,
-        };
-        Self {
-            points: [point; MAX_POINTS],
-            len: 1,
-        }
-    }
-
-    #[inline]
-    fn push(&mut self, point: ContactPoint) {
-        self.points[self.len] = point;
+impl Chosen {
+    #[inline(always)]
+    fn push(&mut self, corner: Option<usize>) {
+        self.corners[self.len] = corner;
         self.len += 1;
     }
 }
@@ -107,14 +66,13 @@ pub fn contacts<A: Polytope, B: Polytope>(
     max_distance: f64,
     scratch: &mut ClipScratch,
 ) -> Contacts {
-    let mut contacts = Contacts::witness(proximity, cso.pose);
     let ClipScratch {
         planes,
         polygons,
         candidates,
     } = scratch;
     let Some(patch) = Patch::new(cso, proximity, proximity.normal, planes) else {
-        return contacts;
+        return Contacts::witness(proximity, cso.pose);
     };
     // Along the query's normal nothing is deeper than the query's answer.
     let least = proximity.signed_distance;
@@ -124,33 +82,33 @@ pub fn contacts<A: Polytope, B: Polytope>(
     let distances = |_, x, y| patch.distances(x, y);
     let range = f32::NEG_INFINITY..=(max_distance / scale) as f32;
     let survey = candidates.set(corners, distances, range, SAME_POINT);
-    let contact = |corner, distance| {
-        let at = (corners.at(corner), polygons.tag(corner));
-        patch.contact(cso, at, distance, least)
-    };
-    let mut first = Vec2::ZERO;
+    let mut first = None;
     // Over two faces the distance is linear, so a corner is deepest. A witness that is no corner
     // and no deeper (somewhere inside of two parallel faces) must not take a corner's place.
     if !survey.at_origin
         && let Some(deepest) = survey.deepest
         && f64::from(candidates.distance(deepest)) <= least / scale + SAME_DEPTH
     {
-        first = corners.at(deepest);
-        contacts.points[0] = contact(deepest, candidates.distance(deepest));
+        first = Some(deepest);
     }
-    let spread = candidates.spread(corners, first, SAME_POINT);
-    for corner in spread.into_iter().flatten() {
-        contacts.push(contact(corner, candidates.distance(corner)));
+    let mut chosen = Chosen::default();
+    chosen.push(first);
+    let first_at = first.map_or(Vec2::ZERO, |corner| corners.at(corner));
+    for corner in candidates.spread(corners, first_at, SAME_POINT) {
+        if corner.is_some() {
+            chosen.push(corner);
+        }
     }
-    if contacts.len < MAX_POINTS {
-        contacts.push(contacts.points[0]);
+    if chosen.len < MAX_POINTS {
+        chosen.push(first);
     }
-    while contacts.len < MAX_POINTS
+    while chosen.len < MAX_POINTS
         && let Some(corner) = candidates.take_beyond()
     {
-        contacts.push(contact(corner, candidates.distance(corner)));
+        chosen.push(Some(corner));
     }
-    contacts
+    let witness = (least, proximity.features);
+    patch.contacts(cso, witness, (polygons, candidates), &chosen)
 }
 
 /// The contacts along another `normal` than the query's: one that was corrected for the internal
@@ -163,105 +121,41 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
     range: [f64; 2],
     scratch: &mut ClipScratch,
 ) -> Contacts {
-    let mut contacts = Contacts::witness(proximity, cso.pose);
-    contacts.len = 0;
     let ClipScratch {
         planes,
         polygons,
         candidates,
     } = scratch;
     let Some(patch) = Patch::new(cso, proximity, normal, planes) else {
-        return contacts;
+        return Contacts::new(&[]);
     };
     patch.clip(cso, polygons);
     let corners = &polygons.corners;
     let [least, most] = range.map(|distance| (distance / cso.smaller_radius()) as f32);
     let distances = |_, x, y| patch.distances(x, y);
     let survey = candidates.set(corners, distances, least..=most, SAME_POINT);
+    let mut chosen = Chosen::default();
     if let Some(deepest) = survey.deepest {
+        chosen.push(survey.deepest);
         let spread = candidates.spread(corners, corners.at(deepest), SAME_POINT);
-        for corner in [Some(deepest)].into_iter().chain(spread).flatten() {
-            let at = (corners.at(corner), polygons.tag(corner));
-            contacts.push(patch.contact(cso, at, candidates.distance(corner), range[0]));
+        for corner in spread.into_iter().filter(Option::is_some) {
+            chosen.push(corner);
         }
     }
-    contacts
-}
-
-/// The contacts of a polytope with the half-space in front of its deepest vertex, the witness of
-/// `proximity`: corners of the face around it, those nearer than `max_distance` first.
-pub fn half_space_contacts(
-    shape: &impl Polytope,
-    pose: &RelativePose,
-    proximity: &Proximity,
-    max_distance: f64,
-    scratch: &mut ClipScratch,
-) -> Contacts {
-    let mut contacts = Contacts::witness(proximity, pose);
-    let (normal, origin) = (proximity.normal, proximity.on_1);
-    let face = patch::facing(shape, proximity.features[0], normal);
-    if shape.face_normal(face).dot(normal) <= patch::EDGE_ON {
-        return contacts;
-    }
-    let distance = |corner: DVec3| proximity.signed_distance - (corner - origin).dot(normal);
-    let contact = |vertex| {
-        let on_1 = shape.vertex(vertex);
-        let distance = distance(on_1);
-        ContactPoint {
-            on_1: on_1.as_vec3(),
-            on_2: pose.point_to_2(on_1 + normal * distance).as_vec3(),
-            distance,
-            features: [Feature::Vertex(vertex), proximity.features[1]],
-        }
-    };
-    let polygon = shape.cap(face).map_or(face, |(outline, _)| outline);
-    let count = shape.face_len(polygon);
-    let corner = |i: usize| shape.face_vertex(polygon, i);
-    if count <= MAX_POINTS {
-        let others = (0..count).map(corner);
-        let others = others.filter(|&v| proximity.features[0] != Feature::Vertex(v));
-        for vertex in others.take(MAX_POINTS - 1) {
-            contacts.push(contact(vertex));
-        }
-        return contacts;
-    }
-    let scale = shape.radius();
-    let plane = Frame::new(origin, normal, scale).chart();
-    let ClipScratch {
-        polygons: Polygons {
-            window, corners, ..
-        },
-        candidates,
-        ..
-    } = scratch;
-    window.set(count, |numbers| {
-        plane.flatten(shape.four_corners(polygon, numbers))
-    });
-    corners.set(window);
-    let distances = |row: usize, _, _| {
-        let of = |lane: usize| shape.vertex(corner((row * LANES + lane).min(count - 1)));
-        f32x4::new([0, 1, 2, 3].map(|lane| (distance(of(lane)) / scale) as f32))
-    };
-    let range = f32::NEG_INFINITY..=(max_distance / scale) as f32;
-    candidates.set(corners, distances, range, SAME_POINT);
-    let spread = candidates.spread(corners, Vec2::ZERO, SAME_POINT);
-    let mut chosen = spread.into_iter().flatten();
-    while contacts.len < MAX_POINTS
-        && let Some(i) = chosen.next().or_else(|| candidates.take_beyond())
-    {
-        contacts.push(contact(corner(i)));
-    }
-    contacts
+    let witness = (range[0], proximity.features);
+    patch.contacts(cso, witness, (polygons, candidates), &chosen)
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::Vec3;
     use parry3d::math::{Pose, Rotation};
 
     use super::*;
     use crate::epa::EpaScratch;
     use crate::hull::Hull;
-    use crate::query::{Answer, Memory, Query};
+    use crate::pose::RelativePose;
+    use crate::query::{Answer, Feature, Memory, Query};
     use crate::stats::Cost;
 
     fn prism(sides: u32, radius: f32) -> Hull {
@@ -315,8 +209,8 @@ mod tests {
                 panic!("no contact: {answer:?}");
             };
             let found = contacts(&cso, &near, 0.1, &mut ClipScratch::default());
-            assert_eq!(found.as_slice().len(), MAX_POINTS);
-            for contact in found.as_slice() {
+            assert_eq!(found.len, MAX_POINTS);
+            for contact in found.iter() {
                 let [on_1, on_2] = [contact.on_1, contact.on_2].map(|p| p.as_dvec3());
                 let off = distance_to(&shapes[0], contact.features[0], on_1).max(distance_to(
                     &shapes[1],

@@ -3,9 +3,11 @@
 use glam::{DVec3, Vec2, Vec3};
 use wide::f32x4;
 
-use super::ContactPoint;
+use super::Chosen;
 use super::clip::{Polygons, Tag};
-use super::polygon::LANES;
+use super::contacts::{Contacts, MAX_POINTS};
+use super::polygon::{LANES, lanes};
+use super::reduce::Candidates;
 use crate::both::both;
 use crate::pose::RelativePose;
 use crate::query::{Feature, Proximity};
@@ -57,9 +59,9 @@ impl Surface<'_> {
         heights
     }
 
-    /// The height of the surface in one place, and the face that it is there.
+    /// The face that the surface is in one place.
     #[inline(always)]
-    fn plane_at(&self, at: Vec2) -> (f32, FaceId) {
+    fn face_at(&self, at: Vec2) -> FaceId {
         let mut height = self.plane.height(at);
         let mut face = self.plane.face;
         for plane in self.more {
@@ -68,7 +70,7 @@ impl Surface<'_> {
                 (height, face) = (other, plane.face);
             }
         }
-        (height, face)
+        face
     }
 }
 
@@ -161,11 +163,15 @@ impl Chart {
         })
     }
 
-    /// The point over a place in the plane.
+    /// The points over places in the plane.
     #[inline(always)]
-    fn point(&self, at: Vec2, height: f32) -> Vec3 {
+    fn points(&self, x: f32x4, y: f32x4, height: f32x4) -> [f32x4; 3] {
         let [u, v] = self.axes;
-        self.origin + ((u * at.x + v * at.y + self.normal * height) * self.scale + self.rest)
+        let coordinate = |axis: usize| {
+            let from_origin = x * u[axis] + y * v[axis] + height * self.normal[axis];
+            from_origin * self.scale + self.rest[axis] + self.origin[axis]
+        };
+        [coordinate(0), coordinate(1), coordinate(2)]
     }
 }
 
@@ -227,42 +233,69 @@ impl<'s> Patch<'s> {
         self.surfaces[1].heights(x, y) - self.surfaces[0].heights(x, y)
     }
 
-    /// The contact at a corner of the intersection, where the surfaces are `distance` apart, but not
-    /// less than `least`.
-    #[inline]
-    pub fn contact<A: Polytope, B: Polytope>(
+    /// The contacts at the chosen corners of the intersection, where the surfaces are as far apart as they
+    /// were measured to be, but not less than `least`. The witness is where `features` meet, at that
+    /// distance.
+    #[inline(always)]
+    pub fn contacts<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
-        (at, tag): (Vec2, Tag),
-        distance: f32,
-        least: f64,
-    ) -> ContactPoint {
-        let [s1, s2] = both([0, 1], |side| self.surfaces[side].plane_at(at));
-        let scale = f64::from(self.charts[0].scale);
-        let distance = (f64::from(distance) * scale).max(least);
+        (least, features): (f64, [Feature; 2]),
+        (polygons, candidates): (&Polygons, &Candidates),
+        chosen: &Chosen,
+    ) -> Contacts {
         let [chart_1, chart_2] = &self.charts;
-        ContactPoint {
-            on_1: chart_1.point(at, s1.0),
-            on_2: chart_2.point(at, s1.0 + distance as f32 * chart_1.per_scale),
+        let mut of_corner = 0;
+        let mut contacts = [features; MAX_POINTS];
+        for (lane, corner) in chosen.corners[..chosen.len].iter().enumerate() {
+            if let &Some(corner) = corner {
+                of_corner |= 1 << lane;
+                contacts[lane] = self.features(cso, polygons, corner);
+            }
+        }
+        let of_corner = lanes(of_corner);
+        let row = |of: &dyn Fn(usize) -> f32| {
+            let [a, b, c, d] = chosen.corners.map(|corner| of(corner.unwrap_or(0)));
+            f32x4::new([a, b, c, d])
+        };
+        // The witness is the origin.
+        let x = of_corner & row(&|corner| polygons.corners.at(corner).x);
+        let y = of_corner & row(&|corner| polygons.corners.at(corner).y);
+        let height = of_corner & self.surfaces[0].heights(x, y);
+        let least = f32x4::splat(least as f32);
+        let measured = row(&|corner| candidates.distance(corner)) * chart_1.scale;
+        let distance = of_corner.bitselect(measured.fast_max(least), least);
+        Contacts {
+            on_1: chart_1.points(x, y, height),
+            on_2: chart_2.points(x, y, height + distance * chart_1.per_scale),
             distance,
-            features: self.features(cso, tag, [s1.1, s2.1]),
+            features: contacts,
+            len: chosen.len,
         }
     }
 
-    /// What meets at a corner of the intersection, at which the surfaces are these faces.
-    #[inline]
+    /// What meets at a corner of the intersection.
+    #[inline(always)]
     fn features<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
-        tag: Tag,
-        faces: [FaceId; 2],
+        polygons: &Polygons,
+        corner: usize,
     ) -> [Feature; 2] {
         let [f1, f2] = self.polygons();
-        let corner_1 = |i: u16| Feature::Vertex(cso.shape_1.face_vertex(f1, i.into()));
-        let corner_2 = |i: u16| Feature::Vertex(cso.shape_2.face_vertex(f2, i.into()));
-        match tag {
-            Tag::Corner(i) => [Feature::Face(faces[0]), corner_2(i)],
-            Tag::Window(i) => [corner_1(i), Feature::Face(faces[1])],
+        let face = |side: usize| {
+            let at = polygons.corners.at(corner);
+            Feature::Face(self.surfaces[side].face_at(at))
+        };
+        match polygons.tag(corner) {
+            Tag::Corner(i) => {
+                let vertex = cso.shape_2.face_vertex(f2, i.into());
+                [face(0), Feature::Vertex(vertex)]
+            }
+            Tag::Window(i) => {
+                let vertex = cso.shape_1.face_vertex(f1, i.into());
+                [Feature::Vertex(vertex), face(1)]
+            }
             Tag::Crossing(i, j) => [
                 edge_of(cso.shape_1, f1, i.into()),
                 edge_of(cso.shape_2, f2, j.into()),

@@ -111,10 +111,11 @@ impl Candidates {
         }
     }
 
-    /// The distance of the faces at a corner.
+    /// The distance of the faces at a corner; 0 where there is none.
     #[inline(always)]
     pub fn distance(&self, corner: usize) -> f32 {
-        self.0[corner / LANES].distance.as_array()[corner % LANES]
+        let four = self.0.get(corner / LANES);
+        four.map_or(0.0, |four| four.distance.as_array()[corner % LANES])
     }
 
     /// The nearest of the corners beyond the range, which is then no longer among them.

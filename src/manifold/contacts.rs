@@ -1,0 +1,85 @@
+//! Up to four contacts, coordinate by coordinate: so they are made and written four at a time.
+
+use glam::Vec3;
+use wide::f32x4;
+
+use super::polygon::LANES;
+use crate::pose::RelativePose;
+use crate::query::{Feature, Proximity};
+
+/// More points than this add no stiffness to a rigid contact.
+pub const MAX_POINTS: usize = LANES;
+
+/// One contact: a point on each shape, on a line along the manifold's normal.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactPoint {
+    /// On the first shape, in frame 1.
+    pub on_1: Vec3,
+    /// On the second shape, in frame 2.
+    pub on_2: Vec3,
+    /// From the first to the second along the normal: negative where the shapes overlap.
+    pub distance: f32,
+    /// What meets there.
+    pub features: [Feature; 2],
+}
+
+/// Up to four contacts with one normal; the witness of the query comes first.
+#[derive(Clone, Copy, Debug)]
+pub struct Contacts {
+    pub(crate) on_1: [f32x4; 3],
+    pub(crate) on_2: [f32x4; 3],
+    pub(crate) distance: f32x4,
+    pub(crate) features: [[Feature; 2]; MAX_POINTS],
+    pub(crate) len: usize,
+}
+
+impl Contacts {
+    /// One by one.
+    pub fn iter(&self) -> impl Iterator<Item = ContactPoint> {
+        let point = |of: &[f32x4; 3], lane: usize| Vec3::from(of.map(|row| row.to_array()[lane]));
+        (0..self.len).map(move |lane| ContactPoint {
+            on_1: point(&self.on_1, lane),
+            on_2: point(&self.on_2, lane),
+            distance: self.distance.to_array()[lane],
+            features: self.features[lane],
+        })
+    }
+
+    /// The witness alone.
+    pub fn witness(proximity: &Proximity, pose: &RelativePose) -> Self {
+        Self::new(&[ContactPoint::witness(proximity, pose)])
+    }
+
+    /// At most four.
+    pub(super) fn new(points: &[ContactPoint]) -> Self {
+        let rows = |of: &dyn Fn(&ContactPoint) -> Vec3| {
+            [0, 1, 2].map(|axis| row(points, |point| of(point)[axis]))
+        };
+        let mut features = [[Feature::Vertex(0); 2]; MAX_POINTS];
+        for (features, point) in features.iter_mut().zip(points) {
+            *features = point.features;
+        }
+        Self {
+            on_1: rows(&|point| point.on_1),
+            on_2: rows(&|point| point.on_2),
+            distance: row(points, |point| point.distance),
+            features,
+            len: points.len(),
+        }
+    }
+}
+
+fn row(points: &[ContactPoint], of: impl Fn(&ContactPoint) -> f32) -> f32x4 {
+    f32x4::new([0, 1, 2, 3].map(|lane| points.get(lane).map_or(0.0, &of)))
+}
+
+impl ContactPoint {
+    pub(super) fn witness(proximity: &Proximity, pose: &RelativePose) -> Self {
+        Self {
+            on_1: proximity.on_1.as_vec3(),
+            on_2: pose.point_to_2(proximity.on_2).as_vec3(),
+            distance: proximity.signed_distance as f32,
+            features: proximity.features,
+        }
+    }
+}
