@@ -72,9 +72,9 @@ impl Hull {
         require_convex(&exact, &surface, radius)?;
         require_single_layer(&exact, triangles, center, radius)?;
 
-        let (mut faces, face_of) = Faces::new(&exact, &surface, radius);
-        let mut graph = EdgeGraph::new(&surface, &face_of);
-        faces.add_caps(&exact, &graph);
+        let (mut faces, joined) = Faces::new(&exact, &surface, radius);
+        let mut graph = EdgeGraph::new(&surface, &joined.face_of);
+        faces.add_caps(&exact, &graph, &joined);
         let search = match Scan::new(&points, center, radius) {
             Some(scan) => Search::Scan(scan),
             None => {

@@ -73,17 +73,22 @@ impl Caps {
     }
 }
 
-/// Grows caps from the largest faces, which come first.
-pub(super) fn grow(points: &[DVec3], faces: &Faces, graph: &EdgeGraph) -> Vec<Cap> {
+/// Grows caps from the largest faces.
+pub(super) fn grow(
+    points: &[DVec3],
+    faces: &Faces,
+    graph: &EdgeGraph,
+    largest_first: &[u16],
+) -> Vec<Cap> {
     let mut taken = vec![false; faces.len()];
     let mut caps = Vec::new();
-    for seed in 0..faces.len() {
-        let plane = Plane::of(points, faces, seed as FaceId);
-        if taken[seed] || plane.normal == DVec3::ZERO {
+    for &seed in largest_first {
+        let plane = Plane::of(points, faces, seed.into());
+        if taken[usize::from(seed)] || plane.normal == DVec3::ZERO {
             continue;
         }
-        let mut members = vec![seed as u16];
-        taken[seed] = true;
+        let mut members = vec![seed];
+        taken[usize::from(seed)] = true;
         let mut next = 0;
         while let Some(&member) = members.get(next) {
             for other in beside(faces, graph, member) {

@@ -43,6 +43,14 @@ pub(super) struct Corner {
 /// The side of an outline that cuts across faces.
 const NO_EDGE: u16 = u16::MAX;
 
+/// What became of triangles.
+pub(super) struct Joined {
+    /// The face that each of them went to.
+    pub face_of: Vec<u16>,
+    /// The faces by their largest triangles.
+    largest_first: Vec<u16>,
+}
+
 /// A supporting plane.
 struct Plane {
     normal: Vec3,
@@ -84,12 +92,14 @@ impl Plane {
 }
 
 impl Faces {
-    /// Joins the triangles of a surface, and says to which face each of them went.
-    pub fn new(points: &[DVec3], surface: &Surface<'_>, radius: f64) -> (Self, Vec<u16>) {
+    /// Joins the triangles of a surface. The faces are in the order of their first triangles, so that
+    /// those around a vertex lie together where triangles do.
+    pub fn new(points: &[DVec3], surface: &Surface<'_>, radius: f64) -> (Self, Joined) {
         let count = surface.triangles.len();
         let regions = Regions::grow(points, surface, radius);
         let mut face_of = vec![0_u16; count];
         let mut faces = Builder::with_capacity(count);
+        let mut faces_of = vec![0..0; regions.len()];
         let mut add = |polygon: &[HalfEdge], triangles: &[u32]| {
             for &t in triangles {
                 face_of[t as usize] = faces.polygons.len() as u16;
@@ -102,26 +112,38 @@ impl Faces {
             faces.add(&plane, polygon.iter().map(corner));
         };
         let mut polygon = Vec::new();
-        for region in regions.all() {
+        let mut face_count = 0;
+        for &r in &regions.of {
+            if !faces_of[r as usize].is_empty() {
+                continue;
+            }
+            let region = regions.triangles(r as usize);
             let joined = region.len() > 1
                 && regions.boundary(surface, region, &mut polygon)
                 && is_convex(points, surface, &polygon, radius);
+            let first = face_count;
             if joined {
                 add(&polygon, region);
+                face_count += 1;
             } else {
                 // Triangle by triangle where it is not one convex polygon.
                 for &t in region {
                     add(&[3 * t, 3 * t + 1, 3 * t + 2], &[t]);
+                    face_count += 1;
                 }
             }
+            faces_of[r as usize] = first..face_count;
         }
-        let count = faces.polygons.len();
-        (faces.finish(count, Caps::default()), face_of)
+        let joined = Joined {
+            face_of,
+            largest_first: faces_of.into_iter().flatten().collect(),
+        };
+        (faces.finish(face_count.into(), Caps::default()), joined)
     }
 
     /// Finds the caps, when the `graph` knows the faces.
-    pub fn add_caps(&mut self, points: &[DVec3], graph: &EdgeGraph) {
-        let caps = caps::grow(points, self, graph);
+    pub fn add_caps(&mut self, points: &[DVec3], graph: &EdgeGraph, joined: &Joined) {
+        let caps = caps::grow(points, self, graph, &joined.largest_first);
         if caps.is_empty() {
             return;
         }
@@ -324,10 +346,12 @@ impl Regions {
         self.first.push(self.triangles.len());
     }
 
-    fn all(&self) -> impl Iterator<Item = &[u32]> {
-        self.first
-            .windows(2)
-            .map(|ends| &self.triangles[ends[0]..ends[1]])
+    fn len(&self) -> usize {
+        self.first.len() - 1
+    }
+
+    fn triangles(&self, region: usize) -> &[u32] {
+        &self.triangles[self.first[region]..self.first[region + 1]]
     }
 
     /// Leaves the sides around a region in `polygon`; `false` if they are not one loop.
