@@ -137,7 +137,7 @@ fn ask<'a>(
         Answer::Near(near) => {
             let scratch = &mut ClipScratch::default();
             let contacts = manifold::contacts(&cso, near, options.prediction, scratch);
-            contacts.as_slice().to_vec()
+            contacts.iter().collect()
         }
     };
     Ok(Snapshot {

@@ -193,7 +193,8 @@ impl Snapshot<'_> {
 
     /// The contact points, on both hulls, and what they span.
     fn draw_patch(&self, canvas: &mut Canvas, normal: DVec3) {
-        let middles = self.contacts.iter().map(|c| c.on_1.midpoint(c.on_2));
+        let ends: Vec<[DVec3; 2]> = self.contacts.iter().map(|c| self.ends(c)).collect();
+        let middles = ends.iter().map(|[on_1, on_2]| on_1.midpoint(*on_2));
         let mut corners: Vec<DVec3> = middles.collect();
         let centre = corners.iter().sum::<DVec3>() / corners.len() as f64;
         let (u, v) = normal.any_orthonormal_pair();
@@ -204,11 +205,17 @@ impl Snapshot<'_> {
             ..Style::new(PATCH)
         };
         canvas.polygon(&corners, style);
-        for contact in &self.contacts {
-            canvas.line(contact.on_1, contact.on_2, style);
-            canvas.dot(contact.on_1, 4.0, PATCH);
-            canvas.dot(contact.on_2, 4.0, PATCH);
+        for [on_1, on_2] in ends {
+            canvas.line(on_1, on_2, style);
+            canvas.dot(on_1, 4.0, PATCH);
+            canvas.dot(on_2, 4.0, PATCH);
         }
+    }
+
+    /// A contact's points on both hulls, in the frame of the first.
+    fn ends(&self, contact: &ContactPoint) -> [DVec3; 2] {
+        let on_2 = self.pose.point_to_1(contact.on_2.as_dvec3());
+        [contact.on_1.as_dvec3(), on_2]
     }
 
     /// From the first hull to the second.

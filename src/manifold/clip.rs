@@ -53,7 +53,7 @@ impl Polygons {
     /// Gathers all corners together.
     #[inline(always)]
     fn intersect_few(&mut self) {
-        let (window, subject) = (&self.window.rows[0], &mut self.subject.rows[0]);
+        let (window, subject) = (&self.window.rows()[0], &mut self.subject.rows_mut()[0]);
         let [mut x, mut y] = [[f32x4::ZERO; LANES + 2]; 2];
         let (mut there, mut inside) = (0, 0);
         for i in 0..self.window.count.min(LANES) {
@@ -85,10 +85,10 @@ impl Polygons {
         // A line of two corners has no side back, and no inside.
         let is_line = subject.count == 2;
         for i in 0..window.count {
-            let row = &window.rows[i / LANES];
+            let row = &window.rows()[i / LANES];
             let side = Side::new(row, i % LANES);
             let mut is_inside = !is_line;
-            for (r, other) in subject.rows.iter_mut().enumerate() {
+            for (r, other) in subject.rows_mut().iter_mut().enumerate() {
                 is_inside &= other.holds(side.x, side.y);
                 let crossings = side.cut(other);
                 let there = crossings.there & if is_line { 1 } else { !0 };
@@ -99,7 +99,7 @@ impl Polygons {
             let source = window_source + i / LANES * LANES;
             corners.gather(there, source, &[row.x], &[row.y]);
         }
-        for (r, row) in subject.rows.iter().enumerate() {
+        for (r, row) in subject.rows().iter().enumerate() {
             let there = row.inside.to_bitmask() & subject.real(r);
             let source = subject_source + r * LANES;
             corners.gather(there, source, &[row.x], &[row.y]);
@@ -150,7 +150,7 @@ impl Corners {
     /// Becomes those of a polygon.
     pub fn set(&mut self, polygon: &Polygon) {
         self.begin(polygon.count);
-        for (r, row) in polygon.rows.iter().enumerate() {
+        for (r, row) in polygon.rows().iter().enumerate() {
             self.gather(polygon.real(r), LANES * r, &[row.x], &[row.y]);
         }
     }

@@ -58,19 +58,19 @@ pub fn half_space_contacts(
         candidates,
         ..
     } = scratch;
-    let scale = shape.radius();
-    let plane = Frame::new(origin, normal, scale).chart();
+    let plane = Frame::new(origin, normal).chart();
     window.set(count, |numbers| {
         plane.flatten(shape.four_corners(polygon, numbers))
     });
     corners.set(window);
     let distances = |row: usize, _, _| {
-        let of_lane = |lane| distance(shape.vertex(corner(LANES * row + lane))) / scale;
+        let of_lane = |lane| distance(shape.vertex(corner(LANES * row + lane)));
         f32x4::new([0, 1, 2, 3].map(|lane| of_lane(lane) as f32))
     };
-    let range = f32::NEG_INFINITY..=(max_distance / scale) as f32;
-    candidates.set(corners, distances, range, SAME_POINT);
-    let spread = candidates.spread(corners, Vec2::ZERO, SAME_POINT);
+    let range = f32::NEG_INFINITY..=max_distance as f32;
+    let same = SAME_POINT * shape.radius() as f32;
+    candidates.set(corners, distances, range, same);
+    let spread = candidates.spread(corners, Vec2::ZERO, same);
     let mut chosen = spread.into_iter().flatten();
     while let Some(i) = chosen.next().or_else(|| candidates.take_beyond()) {
         if push(corner(i)) {

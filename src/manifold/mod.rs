@@ -80,21 +80,22 @@ pub fn contacts<A: Polytope, B: Polytope>(
     patch.clip(cso, polygons);
     let corners = &polygons.corners;
     let distances = |_, x, y| patch.distances(x, y);
-    let range = f32::NEG_INFINITY..=(max_distance / scale) as f32;
-    let survey = candidates.set(corners, distances, range, SAME_POINT);
+    let range = f32::NEG_INFINITY..=max_distance as f32;
+    let same = SAME_POINT * scale as f32;
+    let survey = candidates.set(corners, distances, range, same);
     let mut first = None;
     // Over two faces the distance is linear, so a corner is deepest. A witness that is no corner
     // and no deeper (somewhere inside of two parallel faces) must not take a corner's place.
     if !survey.at_origin
         && let Some(deepest) = survey.deepest
-        && f64::from(candidates.distance(deepest)) <= least / scale + SAME_DEPTH
+        && f64::from(candidates.distance(deepest)) <= least + SAME_DEPTH * scale
     {
         first = Some(deepest);
     }
     let mut chosen = Chosen::default();
     chosen.push(first);
     let first_at = first.map_or(Vec2::ZERO, |corner| corners.at(corner));
-    for corner in candidates.spread(corners, first_at, SAME_POINT) {
+    for corner in candidates.spread(corners, first_at, same) {
         if corner.is_some() {
             chosen.push(corner);
         }
@@ -131,13 +132,14 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
     };
     patch.clip(cso, polygons);
     let corners = &polygons.corners;
-    let [least, most] = range.map(|distance| (distance / cso.smaller_radius()) as f32);
+    let [least, most] = range.map(|distance| distance as f32);
+    let same = SAME_POINT * cso.smaller_radius() as f32;
     let distances = |_, x, y| patch.distances(x, y);
-    let survey = candidates.set(corners, distances, least..=most, SAME_POINT);
+    let survey = candidates.set(corners, distances, least..=most, same);
     let mut chosen = Chosen::default();
     if let Some(deepest) = survey.deepest {
         chosen.push(survey.deepest);
-        let spread = candidates.spread(corners, corners.at(deepest), SAME_POINT);
+        let spread = candidates.spread(corners, corners.at(deepest), same);
         for corner in spread.into_iter().filter(Option::is_some) {
             chosen.push(corner);
         }

@@ -74,26 +74,21 @@ impl Surface<'_> {
     }
 }
 
-/// The contact plane, whose origin is the witness point of shape 1. Its coordinates, and heights over
-/// it, are in units of `scale`: so f32 holds them for shapes of any size. It also holds them well enough:
-/// they are small beside the shapes' own coordinates, and errors are no larger than those of f32 vertices.
-#[derive(Clone, Copy)]
+/// The contact plane as a shape sees it. Its origin is the witness point of shape 1.
 pub(super) struct Frame {
     origin: DVec3,
     normal: DVec3,
     axes: [DVec3; 2],
-    scale: f64,
 }
 
 impl Frame {
     #[inline(always)]
-    pub fn new(origin: DVec3, normal: DVec3, scale: f64) -> Self {
+    pub fn new(origin: DVec3, normal: DVec3) -> Self {
         let u = normal.any_orthonormal_vector();
         Self {
             origin,
             normal,
             axes: [u, normal.cross(u)],
-            scale,
         }
     }
 
@@ -104,8 +99,20 @@ impl Frame {
             origin: pose.point_to_2(self.origin),
             normal: pose.direction_to_2(self.normal),
             axes: both(self.axes, |axis| pose.direction_to_2(axis)),
-            scale: self.scale,
         }
+    }
+
+    /// A face with this outward normal whose plane is `offset` beyond the origin; none if it is seen
+    /// from behind or edge-on.
+    #[inline(always)]
+    fn plane(&self, face: FaceId, outward: DVec3, offset: f64, sign: f32) -> Option<FacePlane> {
+        let along = outward.dot(self.normal);
+        let slope = |axis| (-outward.dot(axis) / along) as f32;
+        (along * f64::from(sign) > EDGE_ON).then(|| FacePlane {
+            face,
+            base: (offset / along) as f32,
+            slope: Vec2::from(both(self.axes, slope)),
+        })
     }
 
     #[inline(always)]
@@ -116,27 +123,12 @@ impl Frame {
             rest: (self.origin - origin.as_dvec3()).as_vec3(),
             normal: self.normal.as_vec3(),
             axes: both(self.axes, |axis| axis.as_vec3()),
-            scale: self.scale as f32,
-            per_scale: self.scale.recip() as f32,
         }
-    }
-
-    /// A face whose outward normal is `outward` in this frame's space and whose plane is `offset`
-    /// beyond the origin; none if it is seen from behind or edge-on.
-    #[inline(always)]
-    fn plane(&self, face: FaceId, outward: DVec3, offset: f64, sign: f32) -> Option<FacePlane> {
-        let along = outward.dot(self.normal);
-        let slope = |axis| (-outward.dot(axis) / along) as f32;
-        (along * f64::from(sign) > EDGE_ON).then(|| FacePlane {
-            face,
-            base: (offset / (along * self.scale)) as f32,
-            slope: Vec2::from(both(self.axes, slope)),
-        })
     }
 }
 
-/// Between a shape's space and the contact plane, in f32.
-#[derive(Clone, Copy)]
+/// Between a shape's space and the contact plane, in f32: beside the witness coordinates are small, and
+/// errors are no larger than those of f32 vertices.
 pub(super) struct Chart {
     /// The plane's origin in two parts: what f32 holds of it, and the rest. So what is near loses
     /// nothing where the shape is large.
@@ -144,9 +136,6 @@ pub(super) struct Chart {
     rest: Vec3,
     normal: Vec3,
     axes: [Vec3; 2],
-    /// The plane's unit of length.
-    scale: f32,
-    per_scale: f32,
 }
 
 impl Chart {
@@ -158,9 +147,7 @@ impl Chart {
         let x = from_origin([a.x, b.x, c.x, d.x], self.origin.x, self.rest.x);
         let y = from_origin([a.y, b.y, c.y, d.y], self.origin.y, self.rest.y);
         let z = from_origin([a.z, b.z, c.z, d.z], self.origin.z, self.rest.z);
-        both(self.axes, |axis| {
-            (x * axis.x + y * axis.y + z * axis.z) * self.per_scale
-        })
+        both(self.axes, |axis| x * axis.x + y * axis.y + z * axis.z)
     }
 
     /// The points over places in the plane.
@@ -169,7 +156,7 @@ impl Chart {
         let [u, v] = self.axes;
         let coordinate = |axis: usize| {
             let from_origin = x * u[axis] + y * v[axis] + height * self.normal[axis];
-            from_origin * self.scale + self.rest[axis] + self.origin[axis]
+            from_origin + self.rest[axis] + self.origin[axis]
         };
         [coordinate(0), coordinate(1), coordinate(2)]
     }
@@ -189,26 +176,26 @@ impl<'s> Patch<'s> {
         normal: DVec3,
         [more_1, more_2]: &'s mut [Vec<FacePlane>; 2],
     ) -> Option<Self> {
-        let frame = Frame::new(proximity.on_1, normal, cso.smaller_radius());
+        let frame = Frame::new(proximity.on_1, normal);
+        let frame_2 = frame.seen_from_2(cso.pose);
         let plane_1 = |face| {
             let outward = cso.shape_1.face_normal(face);
             let offset = cso.shape_1.face_offset(face) - outward.dot(frame.origin);
             frame.plane(face, outward, offset, 1.0)
         };
         let plane_2 = |face| {
-            let (outward, offset) = plane_of_2(cso, face, &frame)?;
-            frame.plane(face, outward, offset, -1.0)
+            let (outward, offset) = plane_of(cso.shape_2, face, &frame_2)?;
+            frame_2.plane(face, outward, offset, -1.0)
         };
-        let outward_2 = -cso.pose.direction_to_2(normal);
         let [f1, f2] = [
             facing(cso.shape_1, proximity.features[0], normal),
-            facing(cso.shape_2, proximity.features[1], outward_2),
+            facing(cso.shape_2, proximity.features[1], -frame_2.normal),
         ];
         let surfaces = [
             surface(cso.shape_1, f1, 1.0, plane_1, more_1)?,
             surface(cso.shape_2, f2, -1.0, plane_2, more_2)?,
         ];
-        let charts = [frame.chart(), frame.seen_from_2(cso.pose).chart()];
+        let charts = [frame.chart(), frame_2.chart()];
         Some(Self { charts, surfaces })
     }
 
@@ -263,11 +250,11 @@ impl<'s> Patch<'s> {
         let y = of_corner & row(&|corner| polygons.corners.at(corner).y);
         let height = of_corner & self.surfaces[0].heights(x, y);
         let least = f32x4::splat(least as f32);
-        let measured = row(&|corner| candidates.distance(corner)) * chart_1.scale;
+        let measured = row(&|corner| candidates.distance(corner));
         let distance = of_corner.bitselect(measured.fast_max(least), least);
         Contacts {
             on_1: chart_1.points(x, y, height),
-            on_2: chart_2.points(x, y, height + distance * chart_1.per_scale),
+            on_2: chart_2.points(x, y, height + distance),
             distance,
             features: contacts,
             len: chosen.len,
@@ -309,32 +296,22 @@ impl<'s> Patch<'s> {
     }
 }
 
-/// The plane of a face of shape 2, in frame 1: its outward normal, and its height over the origin of
-/// the contact plane. A segment has that of its planes which leans least against the contact
-/// normal; a point has none.
+/// The plane of a face of shape 2, in the frame that is given as it sees it: its outward normal, and
+/// its height over the origin of the contact plane. A segment has that of its planes which leans least
+/// against the contact normal; a point has none.
 #[inline]
-fn plane_of_2<A: Polytope, B: Polytope>(
-    cso: &Cso<'_, A, B>,
-    face: FaceId,
-    frame: &Frame,
-) -> Option<(DVec3, f64)> {
-    let shape = cso.shape_2;
+fn plane_of(shape: &impl Polytope, face: FaceId, frame: &Frame) -> Option<(DVec3, f64)> {
     match shape.face_len(face) {
         1 => None,
         2 => {
-            let end = |i| {
-                cso.pose
-                    .point_to_1(shape.vertex(shape.face_vertex(face, i)))
-            };
-            let [from, to] = both([0, 1], end);
+            let [from, to] = both([0, 1], |i| shape.vertex(shape.face_vertex(face, i)));
             let along = (to - from).try_normalize()?;
             let outward = (along * along.dot(frame.normal) - frame.normal).try_normalize()?;
             Some((outward, outward.dot(from - frame.origin)))
         }
         _ => {
             let outward = shape.face_normal(face);
-            let height = shape.face_offset(face) - outward.dot(cso.pose.point_to_2(frame.origin));
-            Some((cso.pose.direction_to_1(outward), height))
+            Some((outward, shape.face_offset(face) - outward.dot(frame.origin)))
         }
     }
 }

@@ -14,11 +14,12 @@ pub(super) const ALL: u32 = (1 << LANES) - 1;
 /// up to rounding are never lost.
 const SLACK: f32 = 4.0 * f32::EPSILON;
 
-/// A polygon; its last row is filled up with its last corner.
-#[derive(Clone, Debug, Default)]
+/// A polygon; its last row is filled up with its first corner.
+#[derive(Clone, Debug)]
 pub(super) struct Polygon {
     pub count: usize,
-    pub rows: Vec<Row>,
+    /// There may be more than it has, and there is always one.
+    rows: Vec<Row>,
 }
 
 /// Four corners, and the sides from each of them to the next. Those of what fills up have no length.
@@ -34,30 +35,56 @@ pub(super) struct Row {
     pub inside: f32x4,
 }
 
+impl Default for Polygon {
+    fn default() -> Self {
+        Self {
+            count: 0,
+            rows: vec![Row::NONE],
+        }
+    }
+}
+
 impl Polygon {
-    /// Becomes the polygon of so many corners, which `corners` has in fours from any first one.
+    /// Becomes the polygon of so many corners, which `corners` has by four numbers.
     #[inline(always)]
     pub fn set(&mut self, count: usize, corners: impl Fn([usize; LANES]) -> [f32x4; 2]) {
-        let last = count - 1;
         self.count = count;
-        self.rows.clear();
-        for first in (0..count).step_by(LANES) {
-            let numbers = [first, first + 1, first + 2, first + 3].map(|i| i.min(last));
-            let [x, y] = corners(numbers);
-            self.rows.push(Row::of_corners(x, y));
+        let rows = count.div_ceil(LANES);
+        if self.rows.len() < rows {
+            self.rows.resize(rows, Row::NONE);
+        }
+        let or_first = |i: usize| if i < count { i } else { 0 };
+        for r in 0..rows {
+            let i = LANES * r;
+            let row = Row::new(corners([
+                i,
+                or_first(i + 1),
+                or_first(i + 2),
+                or_first(i + 3),
+            ]));
+            if r > 0 {
+                self.rows[r - 1].add_sides(row.first());
+            }
+            self.rows[r] = row;
         }
         let start = self.rows[0].first();
-        for r in 0..self.rows.len() {
-            let next = self.rows.get(r + 1).map(Row::first);
-            let end = LANES.min(count - r * LANES);
-            self.rows[r].add_sides(next.unwrap_or(start), end);
-        }
+        self.rows[rows - 1].add_sides(start);
+    }
+
+    #[inline(always)]
+    pub fn rows(&self) -> &[Row] {
+        &self.rows[..self.count.div_ceil(LANES)]
+    }
+
+    #[inline(always)]
+    pub fn rows_mut(&mut self) -> &mut [Row] {
+        &mut self.rows[..self.count.div_ceil(LANES)]
     }
 
     /// The number of corners with those that fill up.
     #[inline(always)]
     pub fn width(&self) -> usize {
-        LANES * self.rows.len()
+        self.count.next_multiple_of(LANES)
     }
 
     /// The bits of those corners of a row that do not fill up.
@@ -68,15 +95,24 @@ impl Polygon {
 }
 
 impl Row {
+    const NONE: Self = Self {
+        x: f32x4::ZERO,
+        y: f32x4::ZERO,
+        along_x: f32x4::ZERO,
+        along_y: f32x4::ZERO,
+        slack: f32x4::ZERO,
+        inside: f32x4::ZERO,
+    };
+
+    /// Without sides.
     #[inline(always)]
-    fn of_corners(x: f32x4, y: f32x4) -> Self {
+    fn new([x, y]: [f32x4; 2]) -> Self {
+        let inside = lanes(ALL);
         Self {
             x,
             y,
-            along_x: f32x4::ZERO,
-            along_y: f32x4::ZERO,
-            slack: f32x4::ZERO,
-            inside: lanes(ALL),
+            inside,
+            ..Self::NONE
         }
     }
 
@@ -85,17 +121,15 @@ impl Row {
         Vec2::new(self.x.to_array()[0], self.y.to_array()[0])
     }
 
-    /// Adds the sides of the first `count` corners, of which the last one's ends at `next`.
+    /// The sides, of which the last one ends at `next`.
     #[inline(always)]
-    fn add_sides(&mut self, next: Vec2, count: usize) {
-        let [from_x, from_y] = [self.x, self.y].map(f32x4::to_array);
-        let (last, filling) = (lanes(1 << (count - 1)), lanes(ALL & ALL << count));
-        let to = |from: f32x4, [_, b, c, d]: [f32; LANES], next: f32| {
-            let to = last.bitselect(f32x4::splat(next), f32x4::new([b, c, d, d]));
-            filling.bitselect(from, to) - from
+    fn add_sides(&mut self, next: Vec2) {
+        let along = |row: f32x4, next: f32| {
+            let [_, b, c, d] = row.to_array();
+            f32x4::new([b, c, d, next]) - row
         };
-        self.along_x = to(self.x, from_x, next.x);
-        self.along_y = to(self.y, from_y, next.y);
+        self.along_x = along(self.x, next.x);
+        self.along_y = along(self.y, next.y);
         // The sum of coordinates is not shorter.
         let length = self.along_x.abs() + self.along_y.abs();
         self.slack = (length + self.x.abs() + self.y.abs()) * length * SLACK;
