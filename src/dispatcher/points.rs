@@ -38,11 +38,11 @@ pub(super) fn write_points<M, C: Default + Copy>(
             data: (),
         }
     };
-    let count = contacts.len;
     let places = [place(0), place(1), place(2), place(3)];
+    let count = contacts.len;
     let tracked = &mut manifold.points;
     let old = Identities::of(tracked);
-    let new = Identities::of(&places[..count]);
+    let new = Identities::of_first(&places, count);
     if old == new && tracked.len() == count {
         for (tracked, place) in tracked.iter_mut().zip(&places) {
             // Copies of the data would cost more than all the rest.
@@ -55,10 +55,8 @@ pub(super) fn write_points<M, C: Default + Copy>(
         return;
     }
     let heirs = heirs(tracked, &old, &places[..count], &new);
-    let mut inheritance = [C::default(); MAX_POINTS + 1];
-    for (data, tracked) in inheritance.iter_mut().zip(&**tracked).take(MAX_POINTS) {
-        *data = tracked.data;
-    }
+    let data = |i: usize| tracked.get(i).map_or_else(C::default, |old| old.data);
+    let inheritance = [data(0), data(1), data(2), data(3), C::default()];
     tracked.clear();
     let points = places.iter().zip(heirs).take(count);
     tracked.extend(points.map(|(place, heir)| TrackedContact {
@@ -76,14 +74,26 @@ pub(super) fn write_points<M, C: Default + Copy>(
 struct Identities([u32x4; 2]);
 
 impl Identities {
-    /// Of the first contacts; of those that a manifold could have beside them, nothing.
+    /// Of a manifold; of contacts that it could have beside its own, nothing.
     #[inline(always)]
     fn of<C>(contacts: &[TrackedContact<C>]) -> Self {
+        if let Some(four) = contacts.first_chunk() {
+            return Self::of_first(four, MAX_POINTS);
+        }
         let [mut first, mut second] = [[0; MAX_POINTS]; 2];
-        for (i, contact) in contacts.iter().take(MAX_POINTS).enumerate() {
+        for (i, contact) in contacts.iter().enumerate() {
             [first[i], second[i]] = [contact.fid1.0, contact.fid2.0];
         }
         Self(cache::identities([first.into(), second.into()]))
+    }
+
+    /// Of so many; of the others, nothing.
+    #[inline(always)]
+    fn of_first<C>([a, b, c, d]: &[TrackedContact<C>; MAX_POINTS], count: usize) -> Self {
+        let counted = u32x4::new([0, 1, 2, 3]).simd_lt(u32x4::splat(count as u32));
+        let first = u32x4::new([a.fid1.0, b.fid1.0, c.fid1.0, d.fid1.0]);
+        let second = u32x4::new([a.fid2.0, b.fid2.0, c.fid2.0, d.fid2.0]);
+        Self(cache::identities([first & counted, second & counted]))
     }
 
     /// A bit for each that is the same as one of the others.

@@ -53,6 +53,15 @@ impl Chosen {
         self.corners[self.len] = corner;
         self.len += 1;
     }
+
+    /// Those that there are. Which these are is not predictable.
+    #[inline(always)]
+    fn push_all(&mut self, corners: [Option<usize>; MAX_POINTS - 1]) {
+        for corner in corners {
+            self.corners[self.len] = corner;
+            self.len += usize::from(corner.is_some());
+        }
+    }
 }
 
 /// The contacts around the witness of a query along its normal: those nearer than `max_distance`
@@ -95,11 +104,7 @@ pub fn contacts<A: Polytope, B: Polytope>(
     let mut chosen = Chosen::default();
     chosen.push(first);
     let first_at = first.map_or(Vec2::ZERO, |corner| corners.at(corner));
-    for corner in candidates.spread(corners, first_at, same) {
-        if corner.is_some() {
-            chosen.push(corner);
-        }
-    }
+    chosen.push_all(candidates.spread(corners, first_at, same));
     if chosen.len < MAX_POINTS {
         chosen.push(first);
     }
@@ -139,10 +144,7 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
     let mut chosen = Chosen::default();
     if let Some(deepest) = survey.deepest {
         chosen.push(survey.deepest);
-        let spread = candidates.spread(corners, corners.at(deepest), same);
-        for corner in spread.into_iter().filter(Option::is_some) {
-            chosen.push(corner);
-        }
+        chosen.push_all(candidates.spread(corners, corners.at(deepest), same));
     }
     let witness = (range[0], proximity.features);
     patch.contacts(cso, witness, (polygons, candidates), &chosen)

@@ -11,10 +11,14 @@ use super::polygon::{LANES, lanes};
 
 /// Corners to choose from, by their numbers.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Candidates(Vec<Four>);
+pub(super) struct Candidates {
+    /// There may be more than are in use.
+    fours: Vec<Four>,
+    rows: usize,
+}
 
 /// Four corners; some of the last ones are none.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Four {
     x: f32x4,
     y: f32x4,
@@ -85,11 +89,14 @@ impl Candidates {
         range: RangeInclusive<f32>,
         same: f32,
     ) -> Survey {
-        self.0.clear();
+        self.rows = corners.count.div_ceil(LANES);
+        if self.fours.len() < self.rows {
+            self.fours.resize(self.rows, Four::default());
+        }
         let (least, most) = (f32x4::splat(*range.start()), f32x4::splat(*range.end()));
         let mut deepest = Greatest::above(f32::NEG_INFINITY);
         let mut at_origin = f32x4::ZERO;
-        for (row, [x, y]) in corners.fours().enumerate() {
+        for (row, (four, [x, y])) in self.fours.iter_mut().zip(corners.fours()).enumerate() {
             let left = corners.count - row * LANES;
             let there = lanes((1 << left.min(LANES)) - 1);
             let distance = distances(row, x, y);
@@ -97,13 +104,13 @@ impl Candidates {
             let near = there & distance.simd_le(most);
             deepest.look_at(row, -distance, near);
             at_origin |= near & (x * x + y * y).simd_le(f32x4::splat(same * same));
-            self.0.push(Four {
+            *four = Four {
                 x,
                 y,
                 distance,
                 near,
                 beyond: there ^ near,
-            });
+            };
         }
         Survey {
             deepest: deepest.corner(),
@@ -111,10 +118,15 @@ impl Candidates {
         }
     }
 
-    /// The distance of the faces at a corner; 0 where there is none.
+    #[inline(always)]
+    fn fours(&self) -> impl Iterator<Item = &Four> {
+        self.fours[..self.rows].iter()
+    }
+
+    /// The distance of the faces at a corner; some number where there is none.
     #[inline(always)]
     pub fn distance(&self, corner: usize) -> f32 {
-        let four = self.0.get(corner / LANES);
+        let four = self.fours.get(corner / LANES);
         four.map_or(0.0, |four| four.distance.as_array()[corner % LANES])
     }
 
@@ -122,11 +134,11 @@ impl Candidates {
     #[inline(always)]
     pub fn take_beyond(&mut self) -> Option<usize> {
         let mut nearest = Greatest::above(f32::NEG_INFINITY);
-        for (row, four) in self.0.iter().enumerate() {
+        for (row, four) in self.fours().enumerate() {
             nearest.look_at(row, -four.distance, four.beyond);
         }
         let corner = nearest.corner()?;
-        self.0[corner / LANES].beyond &= lanes(!(1 << (corner % LANES)));
+        self.fours[corner / LANES].beyond &= lanes(!(1 << (corner % LANES)));
         Some(corner)
     }
 
@@ -147,7 +159,7 @@ impl Candidates {
         // Areas over the line are heights times its length.
         let least = same * line.length();
         let [mut left, mut right] = [Greatest::above(least), Greatest::above(least)];
-        for (row, four) in self.0.iter().enumerate() {
+        for (row, four) in self.fours().enumerate() {
             let area = (four.y - first.y) * line.x - (four.x - first.x) * line.y;
             left.look_at(row, area, four.near);
             right.look_at(row, -area, four.near);
@@ -172,7 +184,7 @@ impl Candidates {
         measure: impl Fn(f32x4, f32x4) -> f32x4,
     ) -> Option<usize> {
         let mut greatest = Greatest::above(least);
-        for (row, four) in self.0.iter().enumerate() {
+        for (row, four) in self.fours().enumerate() {
             let measures = measure(four.x - first.x, four.y - first.y);
             greatest.look_at(row, measures, four.near);
         }
