@@ -171,17 +171,18 @@ impl Question<'_> {
         Some(gap.dot(normal) / normal.length())
     }
 
-    /// How far the shapes are apart along the normal of a manifold. Without points it keeps an axis,
-    /// in the frame of whichever shape was the first to the kernels: what either reading separates
-    /// is apart.
+    /// How far the shapes are apart along the normal of a manifold. Without points it keeps an axis
+    /// from whichever shape was the first to the kernels, in the frame of the larger one: what any of
+    /// these readings separates is apart.
     fn separation_shown(&self, manifold: &ContactManifold) -> Option<f64> {
         let normal = manifold.local_n1;
         let separation = self.separation(normal)?;
         if !manifold.points.is_empty() {
             return Some(separation);
         }
-        let mirrored = self.separation(-(self.pos12.rotation * normal))?;
-        Some(separation.max(mirrored))
+        let seen_from_2 = self.pos12.rotation * normal;
+        let readings = [-normal, seen_from_2, -seen_from_2].map(|axis| self.separation(axis));
+        Some(readings.into_iter().flatten().fold(separation, f64::max))
     }
 
     fn size(&self) -> f64 {
