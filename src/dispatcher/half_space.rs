@@ -1,6 +1,7 @@
 //! Hulls over half-spaces: one support against the plane is the whole query.
 
-use super::pair::{HalfSpace, Pair};
+use super::others::HalfSpace;
+use super::pair::Pair;
 use crate::gjk::SeparatingAxis;
 use crate::pose::RelativePose;
 use crate::query::{Feature, Memory, Proximity};

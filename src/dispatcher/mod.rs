@@ -9,6 +9,7 @@ mod convex;
 mod half_space;
 mod hulls;
 mod mesh;
+mod others;
 mod pair;
 mod parts;
 mod points;

@@ -2,23 +2,19 @@
 
 use std::cell::RefCell;
 
-use glam::DVec3;
 use parry3d::math::{Pose, Real};
-use parry3d::shape::{
-    ConvexPolyhedron, PolygonalFeatureMap, Segment as ParrySegment, Shape, ShapeType, Triangle,
-    TypedShape,
-};
+use parry3d::shape::{ConvexPolyhedron, PolygonalFeatureMap, Shape, ShapeType, TypedShape};
 
 use super::hulls::{EachProved, Find, HullRef, HullTable};
+use super::others::{self, Curved, HalfSpace};
 use super::unchanged::Span;
 use crate::epa::{EpaScratch, Shells};
 use crate::hull::Hull;
 use crate::hull_shape::HullShape;
 use crate::manifold::ClipScratch;
 use crate::pose::RelativePose;
-use crate::primitive::{Ball, Cone, CuboidPolytope, Cylinder, Segment, TrianglePolytope};
+use crate::primitive::Ball;
 use crate::support::{Cso, Polytope, Support};
-use crate::tolerance::THINNEST;
 
 /// What a thread keeps from query to query: prepared hulls, and memory to work in.
 #[derive(Default)]
@@ -70,11 +66,6 @@ pub(super) struct Pair<'a, B> {
     pub borders: [f64; 2],
     /// The hull is the second of the shapes that were asked about.
     pub swapped: bool,
-}
-
-/// The half-space beneath the plane through its origin with this normal.
-pub(super) struct HalfSpace {
-    pub normal: DVec3,
 }
 
 impl<'a, B> Pair<'a, B> {
@@ -284,39 +275,38 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
     fn visit<V: PairVisitor>(self, other: &dyn Shape, visitor: V) -> Option<V::Answer> {
         match other.shape_type() {
             ShapeType::Cuboid => {
-                let cuboid = cuboid(other.as_cuboid()?.half_extents.as_dvec3())?;
+                let cuboid = others::cuboid(other.as_cuboid()?)?;
                 self.polytope(&cuboid, 0.0, visitor)
             }
             ShapeType::RoundCuboid => {
                 let round = other.as_round_cuboid()?;
-                let cuboid = cuboid(round.inner_shape.half_extents.as_dvec3())?;
+                let cuboid = others::cuboid(&round.inner_shape)?;
                 self.polytope(&cuboid, round.border_radius, visitor)
             }
             ShapeType::Triangle => {
-                let triangle = triangle(other.as_triangle()?)?;
+                let triangle = others::triangle(other.as_triangle()?)?;
                 self.polytope(&triangle, 0.0, visitor)
             }
             ShapeType::RoundTriangle => {
                 let round = other.as_round_triangle()?;
-                let triangle = triangle(&round.inner_shape)?;
+                let triangle = others::triangle(&round.inner_shape)?;
                 self.polytope(&triangle, round.border_radius, visitor)
             }
             ShapeType::Ball => {
                 let radius = other.as_ball()?.radius;
-                self.polytope(&Ball::new(positive(radius)?), radius, visitor)
+                self.polytope(&Ball::new(others::positive(radius)?), radius, visitor)
             }
             ShapeType::Capsule => {
                 let capsule = other.as_capsule()?;
-                let core = segment(&capsule.segment, capsule.radius)?;
+                let core = others::segment(&capsule.segment, capsule.radius)?;
                 self.polytope(&core, capsule.radius, visitor)
             }
             ShapeType::Segment => {
-                let segment = segment(other.as_segment()?, 0.0)?;
+                let segment = others::segment(other.as_segment()?, 0.0)?;
                 self.polytope(&segment, 0.0, visitor)
             }
             ShapeType::HalfSpace if V::HALF_SPACES => {
-                let normal = other.as_halfspace()?.normal.as_dvec3().try_normalize()?;
-                let half_space = HalfSpace { normal };
+                let half_space = others::half_space(other.as_halfspace()?)?;
                 self.with(&half_space, 0.0, |pair, scratch| {
                     visitor.visit_half_space(pair, scratch)
                 })
@@ -377,49 +367,4 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
             visit(&pair, scratch)
         })
     }
-}
-
-/// A shape of parry's with a curved surface.
-trait Curved {
-    /// As the kernels know it; `None` if it has no volume.
-    fn kernel(&self) -> Option<impl Support>;
-}
-
-impl Curved for parry3d::shape::Cylinder {
-    fn kernel(&self) -> Option<impl Support> {
-        let (half_height, radius) = (positive(self.half_height)?, positive(self.radius)?);
-        Some(Cylinder::new(half_height, radius))
-    }
-}
-
-impl Curved for parry3d::shape::Cone {
-    fn kernel(&self) -> Option<impl Support> {
-        let (half_height, radius) = (positive(self.half_height)?, positive(self.radius)?);
-        Some(Cone::new(half_height, radius))
-    }
-}
-
-/// `None` for a box that is a segment or a point: it has no faces with a plane.
-#[inline]
-fn cuboid(half_extents: DVec3) -> Option<CuboidPolytope> {
-    let thin = half_extents.cmple(DVec3::splat(THINNEST * half_extents.max_element()));
-    (thin.bitmask().count_ones() < 2).then(|| CuboidPolytope::new(half_extents))
-}
-
-/// A length that tolerances can be relative to.
-fn positive(length: Real) -> Option<f64> {
-    (length > 0.0 && length.is_finite()).then(|| length.into())
-}
-
-#[inline]
-fn segment(segment: &ParrySegment, border: Real) -> Option<Segment> {
-    positive(segment.length() + border)?;
-    let ends = [segment.a, segment.b].map(|p| p.as_dvec3());
-    Some(Segment::new(ends, border.into()))
-}
-
-#[inline]
-fn triangle(triangle: &Triangle) -> Option<TrianglePolytope> {
-    let corners = [triangle.a, triangle.b, triangle.c].map(|p| p.as_dvec3());
-    TrianglePolytope::new(corners)
 }

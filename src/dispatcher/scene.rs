@@ -9,7 +9,8 @@ use parry3d::shape::{PolygonalFeatureMap, Shape};
 
 use super::cache::ordered;
 use super::half_space;
-use super::pair::{self, HalfSpace, Pair, PairVisitor, Scratch};
+use super::others::HalfSpace;
+use super::pair::{self, Pair, PairVisitor, Scratch};
 use crate::gjk::{self, Closest, Outcome};
 use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Proximity, Query};

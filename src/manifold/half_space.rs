@@ -5,7 +5,8 @@ use wide::f32x4;
 
 use super::clip::Polygons;
 use super::contacts::{ContactPoint, Contacts, MAX_POINTS};
-use super::patch::{self, Frame};
+use super::patch;
+use super::plane::{EDGE_ON, Frame};
 use super::polygon::LANES;
 use super::{ClipScratch, SAME_POINT};
 use crate::pose::RelativePose;
@@ -25,7 +26,7 @@ pub fn half_space_contacts(
     let mut contacts = [ContactPoint::witness(proximity, pose); MAX_POINTS];
     let (normal, origin) = (proximity.normal, proximity.on_1);
     let face = patch::facing(shape, proximity.features[0], normal);
-    if shape.face_normal(face).dot(normal) <= patch::EDGE_ON {
+    if shape.face_normal(face).dot(normal) <= EDGE_ON {
         return Contacts::new(&contacts[..1]);
     }
     let polygon = shape.cap(face).map_or(face, |(outline, _)| outline);

@@ -11,6 +11,7 @@ mod clip;
 mod contacts;
 mod half_space;
 mod patch;
+mod plane;
 mod polygon;
 mod reduce;
 
@@ -19,7 +20,8 @@ use glam::{DVec3, Vec2};
 use crate::query::Proximity;
 use crate::support::{Cso, Polytope};
 use clip::Polygons;
-use patch::{FacePlane, Patch};
+use patch::Patch;
+use plane::FacePlane;
 use reduce::Candidates;
 
 pub use contacts::{ContactPoint, Contacts, MAX_POINTS};

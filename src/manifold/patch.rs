@@ -1,40 +1,16 @@
 //! The two surfaces in contact, seen along the contact normal.
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2};
 use wide::f32x4;
 
 use super::Chosen;
 use super::clip::{Polygons, Tag};
 use super::contacts::{Contacts, MAX_POINTS};
-use super::polygon::{LANES, lanes};
+use super::plane::{Chart, FacePlane, Frame};
+use super::polygon::lanes;
 use super::reduce::Candidates;
-use crate::both::both;
-use crate::pose::RelativePose;
 use crate::query::{Feature, Proximity};
 use crate::support::{Cso, FaceId, Polytope};
-
-/// A face seen edge-on (cosine to the contact normal) has no usable projection.
-pub(super) const EDGE_ON: f64 = 0.05;
-
-/// The plane of a face over the contact plane: `height(x) = base + slope · x` along the normal.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FacePlane {
-    face: FaceId,
-    base: f32,
-    slope: Vec2,
-}
-
-impl FacePlane {
-    #[inline(always)]
-    fn heights(&self, x: f32x4, y: f32x4) -> f32x4 {
-        x * self.slope.x + y * self.slope.y + self.base
-    }
-
-    #[inline(always)]
-    fn height(&self, at: Vec2) -> f32 {
-        at.x * self.slope.x + at.y * self.slope.y + self.base
-    }
-}
 
 /// The surface of one shape: the face in contact, or all faces of the cap that it belongs to.
 struct Surface<'s> {
@@ -47,7 +23,33 @@ struct Surface<'s> {
     sign: f32,
 }
 
-impl Surface<'_> {
+impl<'s> Surface<'s> {
+    /// That around `face` over the contact plane; none if the face is seen edge-on.
+    #[inline(always)]
+    fn new(
+        frame: &Frame,
+        shape: &impl Polytope,
+        face: FaceId,
+        sign: f32,
+        more: &'s mut Vec<FacePlane>,
+    ) -> Option<Self> {
+        more.clear();
+        let plane = frame.plane(shape, face, sign)?;
+        let mut polygon = face;
+        if let Some((outline, faces)) = shape.cap(face) {
+            polygon = outline;
+            let others = faces.iter().map(|&f| FaceId::from(f));
+            let others = others.filter(|&other| other != face);
+            more.extend(others.filter_map(|other| frame.plane(shape, other, sign)));
+        }
+        Some(Self {
+            polygon,
+            plane,
+            more,
+            sign,
+        })
+    }
+
     /// Of planes around a convex shape, the innermost is the surface.
     #[inline(always)]
     fn heights(&self, x: f32x4, y: f32x4) -> f32x4 {
@@ -74,94 +76,6 @@ impl Surface<'_> {
     }
 }
 
-/// The contact plane as a shape sees it. Its origin is the witness point of shape 1.
-pub(super) struct Frame {
-    origin: DVec3,
-    normal: DVec3,
-    axes: [DVec3; 2],
-}
-
-impl Frame {
-    #[inline(always)]
-    pub fn new(origin: DVec3, normal: DVec3) -> Self {
-        let u = normal.any_orthonormal_vector();
-        Self {
-            origin,
-            normal,
-            axes: [u, normal.cross(u)],
-        }
-    }
-
-    /// The same plane in the frame of shape 2.
-    #[inline(always)]
-    fn seen_from_2(&self, pose: &RelativePose) -> Self {
-        Self {
-            origin: pose.point_to_2(self.origin),
-            normal: pose.direction_to_2(self.normal),
-            axes: both(self.axes, |axis| pose.direction_to_2(axis)),
-        }
-    }
-
-    /// A face with this outward normal whose plane is `offset` beyond the origin; none if it is seen
-    /// from behind or edge-on.
-    #[inline(always)]
-    fn plane(&self, face: FaceId, outward: DVec3, offset: f64, sign: f32) -> Option<FacePlane> {
-        let along = outward.dot(self.normal);
-        let slope = |axis| (-outward.dot(axis) / along) as f32;
-        (along * f64::from(sign) > EDGE_ON).then(|| FacePlane {
-            face,
-            base: (offset / along) as f32,
-            slope: Vec2::from(both(self.axes, slope)),
-        })
-    }
-
-    #[inline(always)]
-    pub fn chart(&self) -> Chart {
-        let origin = self.origin.as_vec3();
-        Chart {
-            origin,
-            rest: (self.origin - origin.as_dvec3()).as_vec3(),
-            normal: self.normal.as_vec3(),
-            axes: both(self.axes, |axis| axis.as_vec3()),
-        }
-    }
-}
-
-/// Between a shape's space and the contact plane, in f32: beside the witness coordinates are small, and
-/// errors are no larger than those of f32 vertices.
-pub(super) struct Chart {
-    /// The plane's origin in two parts: what f32 holds of it, and the rest. So what is near loses
-    /// nothing where the shape is large.
-    origin: Vec3,
-    rest: Vec3,
-    normal: Vec3,
-    axes: [Vec3; 2],
-}
-
-impl Chart {
-    /// Four points into the plane, coordinate by coordinate.
-    #[inline(always)]
-    pub fn flatten(&self, points: [Vec3; LANES]) -> [f32x4; 2] {
-        let [a, b, c, d] = points;
-        let from_origin = |p: [f32; LANES], origin: f32, rest: f32| f32x4::new(p) - origin - rest;
-        let x = from_origin([a.x, b.x, c.x, d.x], self.origin.x, self.rest.x);
-        let y = from_origin([a.y, b.y, c.y, d.y], self.origin.y, self.rest.y);
-        let z = from_origin([a.z, b.z, c.z, d.z], self.origin.z, self.rest.z);
-        both(self.axes, |axis| x * axis.x + y * axis.y + z * axis.z)
-    }
-
-    /// The points over places in the plane.
-    #[inline(always)]
-    fn points(&self, x: f32x4, y: f32x4, height: f32x4) -> [f32x4; 3] {
-        let [u, v] = self.axes;
-        let coordinate = |axis: usize| {
-            let from_origin = x * u[axis] + y * v[axis] + height * self.normal[axis];
-            from_origin + self.rest[axis] + self.origin[axis]
-        };
-        [coordinate(0), coordinate(1), coordinate(2)]
-    }
-}
-
 /// Both surfaces over the contact plane.
 pub(super) struct Patch<'s> {
     /// From the spaces of both shapes.
@@ -178,22 +92,13 @@ impl<'s> Patch<'s> {
     ) -> Option<Self> {
         let frame = Frame::new(proximity.on_1, normal);
         let frame_2 = frame.seen_from_2(cso.pose);
-        let plane_1 = |face| {
-            let outward = cso.shape_1.face_normal(face);
-            let offset = cso.shape_1.face_offset(face) - outward.dot(frame.origin);
-            frame.plane(face, outward, offset, 1.0)
-        };
-        let plane_2 = |face| {
-            let (outward, offset) = plane_of(cso.shape_2, face, &frame_2)?;
-            frame_2.plane(face, outward, offset, -1.0)
-        };
         let [f1, f2] = [
             facing(cso.shape_1, proximity.features[0], normal),
             facing(cso.shape_2, proximity.features[1], -frame_2.normal),
         ];
         let surfaces = [
-            surface(cso.shape_1, f1, 1.0, plane_1, more_1)?,
-            surface(cso.shape_2, f2, -1.0, plane_2, more_2)?,
+            Surface::new(&frame, cso.shape_1, f1, 1.0, more_1)?,
+            Surface::new(&frame_2, cso.shape_2, f2, -1.0, more_2)?,
         ];
         let charts = [frame.chart(), frame_2.chart()];
         Some(Self { charts, surfaces })
@@ -294,51 +199,6 @@ impl<'s> Patch<'s> {
     fn polygons(&self) -> [FaceId; 2] {
         [self.surfaces[0].polygon, self.surfaces[1].polygon]
     }
-}
-
-/// The plane of a face of shape 2, in the frame that is given as it sees it: its outward normal, and
-/// its height over the origin of the contact plane. A segment has that of its planes which leans least
-/// against the contact normal; a point has none.
-#[inline]
-fn plane_of(shape: &impl Polytope, face: FaceId, frame: &Frame) -> Option<(DVec3, f64)> {
-    match shape.face_len(face) {
-        1 => None,
-        2 => {
-            let [from, to] = both([0, 1], |i| shape.vertex(shape.face_vertex(face, i)));
-            let along = (to - from).try_normalize()?;
-            let outward = (along * along.dot(frame.normal) - frame.normal).try_normalize()?;
-            Some((outward, outward.dot(from - frame.origin)))
-        }
-        _ => {
-            let outward = shape.face_normal(face);
-            Some((outward, shape.face_offset(face) - outward.dot(frame.origin)))
-        }
-    }
-}
-
-/// The surface around `face`; none if the face is seen edge-on.
-#[inline]
-fn surface<'s>(
-    shape: &impl Polytope,
-    face: FaceId,
-    sign: f32,
-    plane: impl Fn(FaceId) -> Option<FacePlane>,
-    more: &'s mut Vec<FacePlane>,
-) -> Option<Surface<'s>> {
-    more.clear();
-    let main = plane(face)?;
-    let mut polygon = face;
-    if let Some((outline, faces)) = shape.cap(face) {
-        polygon = outline;
-        let others = faces.iter().map(|&f| FaceId::from(f));
-        more.extend(others.filter(|&other| other != face).filter_map(plane));
-    }
-    Some(Surface {
-        polygon,
-        plane: main,
-        more,
-        sign,
-    })
 }
 
 /// The face that is in contact: the feature itself, or that next to it which faces the other

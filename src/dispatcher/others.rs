@@ -1,0 +1,69 @@
+//! Shapes of parry's beside hulls, as the kernels know them; `None` for what they cannot know, because
+//! it has no extent or is not finite.
+
+use glam::DVec3;
+use parry3d::math::Real;
+use parry3d::shape::{
+    Cone as ParryCone, Cuboid, Cylinder as ParryCylinder, HalfSpace as ParryHalfSpace,
+    Segment as ParrySegment, Triangle,
+};
+
+use crate::primitive::{Cone, CuboidPolytope, Cylinder, Segment, TrianglePolytope};
+use crate::support::Support;
+use crate::tolerance::THINNEST;
+
+/// The half-space beneath the plane through its origin with this normal.
+pub(super) struct HalfSpace {
+    pub normal: DVec3,
+}
+
+pub(super) fn half_space(half_space: &ParryHalfSpace) -> Option<HalfSpace> {
+    let normal = half_space.normal.as_dvec3().try_normalize()?;
+    Some(HalfSpace { normal })
+}
+
+/// A shape of parry's with a curved surface.
+pub(super) trait Curved {
+    /// As the kernels know it; `None` if it has no volume.
+    fn kernel(&self) -> Option<impl Support>;
+}
+
+impl Curved for ParryCylinder {
+    fn kernel(&self) -> Option<impl Support> {
+        let (half_height, radius) = (positive(self.half_height)?, positive(self.radius)?);
+        Some(Cylinder::new(half_height, radius))
+    }
+}
+
+impl Curved for ParryCone {
+    fn kernel(&self) -> Option<impl Support> {
+        let (half_height, radius) = (positive(self.half_height)?, positive(self.radius)?);
+        Some(Cone::new(half_height, radius))
+    }
+}
+
+/// `None` for a box that is a segment or a point: it has no faces with a plane.
+#[inline]
+pub(super) fn cuboid(cuboid: &Cuboid) -> Option<CuboidPolytope> {
+    let half_extents = cuboid.half_extents.as_dvec3();
+    let thin = half_extents.cmple(DVec3::splat(THINNEST * half_extents.max_element()));
+    (thin.bitmask().count_ones() < 2).then(|| CuboidPolytope::new(half_extents))
+}
+
+/// A length that tolerances can be relative to.
+pub(super) fn positive(length: Real) -> Option<f64> {
+    (length > 0.0 && length.is_finite()).then(|| length.into())
+}
+
+#[inline]
+pub(super) fn segment(segment: &ParrySegment, border: Real) -> Option<Segment> {
+    positive(segment.length() + border)?;
+    let ends = [segment.a, segment.b].map(|p| p.as_dvec3());
+    Some(Segment::new(ends, border.into()))
+}
+
+#[inline]
+pub(super) fn triangle(triangle: &Triangle) -> Option<TrianglePolytope> {
+    let corners = [triangle.a, triangle.b, triangle.c].map(|p| p.as_dvec3());
+    TrianglePolytope::new(corners)
+}
