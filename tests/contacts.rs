@@ -171,3 +171,73 @@ fn the_deepest_contact_bears_twice_where_there_is_room() {
     data.sort_unstable();
     assert_eq!(data, [1, 2, 3, 4]);
 }
+
+/// Lengths have no unit: the same scene a billion times as large or as small has the same contacts.
+#[test]
+fn contacts_scale_with_the_shapes() {
+    let points = |scale: Real| {
+        let slab = SharedShape::cuboid(10.0 * scale, scale, 10.0 * scale);
+        let corners = flat_box();
+        let corners = corners.as_convex_polyhedron().expect("a hull").points();
+        let corners: Vec<Vector> = corners.iter().map(|&p| p * scale).collect();
+        let shape = SharedShape::convex_hull(&corners).expect("a solid");
+        let pose = Pose::translation(0.0, 1.0, 0.0) * standing(Vector::new(1e-3, 0.4, 2e-3));
+        let pos12 = Pose::from_parts(pose.translation * scale, pose.rotation);
+        let mut manifolds: Vec<Manifold> = Vec::new();
+        IsaGjkDispatcher::default()
+            .contact_manifolds(
+                &pos12,
+                &*slab,
+                &*shape,
+                0.02 * scale,
+                &mut manifolds,
+                &mut None,
+            )
+            .expect("supported");
+        let points = manifolds[0]
+            .points
+            .iter()
+            .map(|p| (p.local_p1 / scale, p.fid1, p.fid2));
+        points.collect::<Vec<_>>()
+    };
+    let usual = points(1.0);
+    assert_eq!(usual.len(), 4);
+    for exponent in [-30, -20, -10, 10, 20, 30] {
+        assert_eq!(points(2.0_f32.powi(exponent)), usual, "2^{exponent}");
+    }
+}
+
+/// A box on a floor a kilometre wide, at its rim: contacts are as exact as positions there are, and end
+/// where the floor ends.
+#[test]
+fn contacts_far_from_the_middle_of_a_large_shape_are_exact() {
+    let half = 500.0;
+    let floor = SharedShape::cuboid(half, 1.0, half);
+    let shape = flat_box();
+    let at = Vector::new(half - 0.25, 1.0 + HALF_HEIGHT - 1e-3, 300.5);
+    let mut manifolds: Vec<Manifold> = Vec::new();
+    IsaGjkDispatcher::default()
+        .contact_manifolds(
+            &Pose::from_translation(at),
+            &*floor,
+            &*shape,
+            0.02,
+            &mut manifolds,
+            &mut None,
+        )
+        .expect("supported");
+    let points = &manifolds[0].points;
+    assert_eq!(points.len(), 4);
+    // One rounding of coordinates of 500.
+    let rounding = half * Real::EPSILON;
+    for point in points {
+        let p2 = at + point.local_p2;
+        assert!((p2.x - half).abs() < 2.0 * rounding || (point.local_p2.x + 1.0).abs() < 1e-6);
+        assert!((point.local_p2.z.abs() - 1.0).abs() < 1e-6, "{point:?}");
+        assert!((point.dist + 1e-3).abs() < 1e-6, "{point:?}");
+        assert!(
+            point.local_p1.distance(p2) < 1e-3 + 4.0 * rounding,
+            "{point:?}"
+        );
+    }
+}
