@@ -47,7 +47,7 @@
 //! Frame 1 is that of a pair's first shape; normals point from shape 1 to shape 2. Positions are
 //! in the named shape's frame, lengths in the units of the shapes (metres in rapier). Distances
 //! are positive between separate shapes, and minus the penetration depth between overlapping
-//! ones. Input is f32, all arithmetic behind it f64.
+//! ones. Input is f32, all arithmetic of queries f64.
 //!
 //! # Map
 //!

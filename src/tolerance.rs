@@ -1,6 +1,6 @@
 //! Every tolerance of the crate, with its reason.
 //!
-//! Shapes come with f32 coordinates (unit roundoff 6e-8) and all arithmetic behind them is f64
+//! Shapes come with f32 coordinates (unit roundoff 6e-8) and all arithmetic of queries is f64
 //! (1e-16), so what is exact in the input stays decidable. A tolerance named "relative" is
 //! multiplied by a length of the shapes at hand; none is an absolute length.
 
