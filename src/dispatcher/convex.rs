@@ -192,8 +192,10 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         });
         let unconstrained = n1;
         let [c1, c2] = self.constraints;
-        let is_possible = c1
-            .with(|c1| c2.with(|c2| (c1, c2).project_local_normals(self.pos12, &mut n1, &mut n2)));
+        let is_possible = matches!((c1, c2), (Constraints::None, Constraints::None))
+            || c1.with(|c1| {
+                c2.with(|c2| (c1, c2).project_local_normals(self.pos12, &mut n1, &mut n2))
+            });
         if !is_possible {
             // Discarded: there is no contact, but there is a place to start from.
             cache::write_start(self.manifold, near, cso);

@@ -3,15 +3,15 @@
 use glam::Vec3;
 use parry3d::math::Real;
 use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::PackedFeatureId;
 use wide::{f32x4, u32x4};
 
 use super::cache;
+use crate::both::both;
 use crate::manifold::{Contacts, MAX_POINTS};
+use crate::query::Feature;
 
 /// Replaces the manifold's points, and hands the data (the solver's impulses) of the old ones on.
-///
-/// How many points there are and which of them are old is not predictable, and branches that go
-/// wrong cost more than the work: so all that a manifold can have are computed, wanted or not.
 pub(super) fn write_points<M, C: Default + Copy>(
     manifold: &mut ContactManifold<M, C>,
     contacts: &Contacts,
@@ -19,57 +19,85 @@ pub(super) fn write_points<M, C: Default + Copy>(
     swapped: bool,
 ) {
     let normals = cache::ordered([manifold.local_n1, manifold.local_n2], swapped);
-    let at_border = |points: &[f32x4; 3], side: usize| {
-        let border = normals[side] * borders[side] as Real;
-        [0, 1, 2].map(|axis| (points[axis] + border[axis]).to_array())
-    };
-    let points = [at_border(&contacts.on_1, 0), at_border(&contacts.on_2, 1)];
-    let distances = (contacts.distance - (borders[0] + borders[1]) as Real).to_array();
-    let (side_1, side_2) = (usize::from(swapped), usize::from(!swapped));
-    let place = |lane: usize| {
-        let point = |side: usize| Vec3::from(points[side].map(|row| row[lane]));
-        let fid = |side: usize| cache::pack(contacts.features[lane][side]);
-        TrackedContact {
-            local_p1: point(side_1),
-            local_p2: point(side_2),
-            dist: distances[lane],
-            fid1: fid(side_1),
-            fid2: fid(side_2),
-            data: (),
-        }
-    };
-    let places = [place(0), place(1), place(2), place(3)];
+    let places = Places::new(contacts, normals, borders, swapped);
     let count = contacts.len;
     let tracked = &mut manifold.points;
     let old = Identities::of(tracked);
-    let new = Identities::of_first(&places, count);
+    let new = places.identities(count);
     if old == new && tracked.len() == count {
-        for (tracked, place) in tracked.iter_mut().zip(&places) {
-            // Copies of the data would cost more than all the rest.
-            tracked.local_p1 = place.local_p1;
-            tracked.local_p2 = place.local_p2;
-            tracked.dist = place.dist;
-            tracked.fid1 = place.fid1;
-            tracked.fid2 = place.fid2;
+        for (i, tracked) in tracked.iter_mut().enumerate() {
+            *tracked = places.tracked(i, tracked.data);
         }
         return;
     }
-    let heirs = heirs(tracked, &old, &places[..count], &new);
+    let heirs = heirs(tracked, &old, &places, &new, count);
     let data = |i: usize| tracked.get(i).map_or_else(C::default, |old| old.data);
     let inheritance = [data(0), data(1), data(2), data(3), C::default()];
     tracked.clear();
-    let points = places.iter().zip(heirs).take(count);
-    tracked.extend(points.map(|(place, heir)| TrackedContact {
-        local_p1: place.local_p1,
-        local_p2: place.local_p2,
-        dist: place.dist,
-        fid1: place.fid1,
-        fid2: place.fid2,
-        data: inheritance[heir],
-    }));
+    tracked.extend((0..count).map(|i| places.tracked(i, inheritance[heirs[i]])));
 }
 
-/// What the contacts of a manifold are between, see [`cache::identity`]: by the first shape, and by the
+/// Where contacts are, and between what, as the manifold sees the shapes: coordinate by coordinate, those
+/// that mean nothing included.
+struct Places {
+    points: [[[f32; MAX_POINTS]; 3]; 2],
+    distances: [f32; MAX_POINTS],
+    features: [[u32; MAX_POINTS]; 2],
+}
+
+impl Places {
+    #[inline(always)]
+    fn new(contacts: &Contacts, normals: [Vec3; 2], borders: [f64; 2], swapped: bool) -> Self {
+        let at_border = |(points, side): (&[f32x4; 3], usize)| {
+            let [x, y, z] = *points;
+            let to_border = normals[side] * borders[side] as Real;
+            [
+                (x + to_border.x).to_array(),
+                (y + to_border.y).to_array(),
+                (z + to_border.z).to_array(),
+            ]
+        };
+        let [a, b, c, d] = &contacts.features;
+        let packed = |side: usize| {
+            let pack = |features: &[Feature; 2]| cache::pack(features[side]).0;
+            [pack(a), pack(b), pack(c), pack(d)]
+        };
+        // References, since which one comes first is selected.
+        let sides = cache::ordered([(&contacts.on_1, 0), (&contacts.on_2, 1)], swapped);
+        Self {
+            points: both(sides, at_border),
+            distances: (contacts.distance - (borders[0] + borders[1]) as Real).to_array(),
+            features: both(sides, |(_, side)| packed(side)),
+        }
+    }
+
+    #[inline(always)]
+    fn point(&self, side: usize, i: usize) -> Vec3 {
+        let [x, y, z] = &self.points[side];
+        Vec3::new(x[i], y[i], z[i])
+    }
+
+    #[inline(always)]
+    fn tracked<C>(&self, i: usize, data: C) -> TrackedContact<C> {
+        let [fid1, fid2] = [0, 1].map(|side| PackedFeatureId(self.features[side][i]));
+        TrackedContact {
+            local_p1: self.point(0, i),
+            local_p2: self.point(1, i),
+            dist: self.distances[i],
+            fid1,
+            fid2,
+            data,
+        }
+    }
+
+    /// Of so many; of the others, nothing.
+    #[inline(always)]
+    fn identities(&self, count: usize) -> Identities {
+        Identities::new(self.features, count)
+    }
+}
+
+/// What the contacts of a manifold are between, see [`cache::identities`]: by the first shape, and by the
 /// second.
 struct Identities([u32x4; 2]);
 
@@ -77,23 +105,24 @@ impl Identities {
     /// Of a manifold; of contacts that it could have beside its own, nothing.
     #[inline(always)]
     fn of<C>(contacts: &[TrackedContact<C>]) -> Self {
-        if let Some(four) = contacts.first_chunk() {
-            return Self::of_first(four, MAX_POINTS);
+        if let Some([a, b, c, d]) = contacts.first_chunk() {
+            let first = [a.fid1.0, b.fid1.0, c.fid1.0, d.fid1.0];
+            let second = [a.fid2.0, b.fid2.0, c.fid2.0, d.fid2.0];
+            return Self::new([first, second], MAX_POINTS);
         }
         let [mut first, mut second] = [[0; MAX_POINTS]; 2];
         for (i, contact) in contacts.iter().enumerate() {
             [first[i], second[i]] = [contact.fid1.0, contact.fid2.0];
         }
-        Self(cache::identities([first.into(), second.into()]))
+        Self::new([first, second], contacts.len())
     }
 
-    /// Of so many; of the others, nothing.
+    /// From the packed features of so many; of the others, nothing.
     #[inline(always)]
-    fn of_first<C>([a, b, c, d]: &[TrackedContact<C>; MAX_POINTS], count: usize) -> Self {
+    fn new([first, second]: [[u32; MAX_POINTS]; 2], count: usize) -> Self {
         let counted = u32x4::new([0, 1, 2, 3]).simd_lt(u32x4::splat(count as u32));
-        let first = u32x4::new([a.fid1.0, b.fid1.0, c.fid1.0, d.fid1.0]);
-        let second = u32x4::new([a.fid2.0, b.fid2.0, c.fid2.0, d.fid2.0]);
-        Self(cache::identities([first & counted, second & counted]))
+        let features = [first, second].map(|row| u32x4::new(row) & counted);
+        Self(cache::identities(features))
     }
 
     /// A bit for each that is the same as one of the others.
@@ -125,8 +154,9 @@ const NONE: usize = MAX_POINTS;
 fn heirs<C>(
     old: &[TrackedContact<C>],
     old_ids: &Identities,
-    new: &[TrackedContact<()>],
+    places: &Places,
     new_ids: &Identities,
+    count: usize,
 ) -> [usize; MAX_POINTS] {
     let old = &old[..old.len().min(MAX_POINTS)];
     let mut heirs = [NONE; MAX_POINTS];
@@ -141,8 +171,10 @@ fn heirs<C>(
     if left == 0 {
         return heirs;
     }
-    for (heir, new) in heirs.iter_mut().zip(new).filter(|(heir, _)| **heir == NONE) {
-        let away = |j: &usize| old[*j].local_p1.distance_squared(new.local_p1);
+    let orphans = heirs[..count].iter_mut().enumerate();
+    for (i, heir) in orphans.filter(|(_, heir)| **heir == NONE) {
+        let place = places.point(0, i);
+        let away = |j: &usize| old[*j].local_p1.distance_squared(place);
         let others = (0..old.len()).filter(|j| left >> j & 1 == 1);
         if let Some(j) = others.min_by(|j, k| away(j).total_cmp(&away(k))) {
             *heir = j;

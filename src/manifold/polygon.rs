@@ -49,19 +49,25 @@ impl Polygon {
     #[inline(always)]
     pub fn set(&mut self, count: usize, corners: impl Fn([usize; LANES]) -> [f32x4; 2]) {
         self.count = count;
-        let rows = count.div_ceil(LANES);
+        if count > LANES {
+            return self.set_many(&corners);
+        }
+        let or_first = |i: usize| if i < count { i } else { 0 };
+        let mut row = Row::new(corners([0, or_first(1), or_first(2), or_first(3)]));
+        row.add_sides(row.first());
+        self.rows[0] = row;
+    }
+
+    #[inline(never)]
+    fn set_many(&mut self, corners: &dyn Fn([usize; LANES]) -> [f32x4; 2]) {
+        let rows = self.count.div_ceil(LANES);
         if self.rows.len() < rows {
             self.rows.resize(rows, Row::NONE);
         }
-        let or_first = |i: usize| if i < count { i } else { 0 };
         for r in 0..rows {
-            let i = LANES * r;
-            let row = Row::new(corners([
-                i,
-                or_first(i + 1),
-                or_first(i + 2),
-                or_first(i + 3),
-            ]));
+            let or_first = |i: usize| if i < self.count { i } else { 0 };
+            let numbers = [0, 1, 2, 3].map(|lane| or_first(LANES * r + lane));
+            let row = Row::new(corners(numbers));
             if r > 0 {
                 self.rows[r - 1].add_sides(row.first());
             }
