@@ -17,6 +17,7 @@ use parry3d::query::ContactManifold;
 use parry3d::shape::PackedFeatureId;
 use wide::u32x4;
 
+use crate::both::both;
 use crate::gjk::SeparatingAxis;
 use crate::pose::RelativePose;
 use crate::query::{self, Feature, Memory, Proximity};
@@ -189,7 +190,7 @@ pub(super) fn pack(feature: Feature) -> PackedFeatureId {
 pub(super) fn identities([a, b]: [u32x4; 2]) -> [u32x4; 2] {
     let [kind, face] = [u32x4::splat(KIND), u32x4::splat(FACE)];
     let vertex_and_face = ((a ^ b) & kind).simd_eq(u32x4::splat(VERTEX ^ FACE));
-    [a, b].map(|id| {
+    both([a, b], |id| {
         let unnamed = vertex_and_face & (id & kind).simd_eq(face);
         unnamed.bitselect(face, id)
     })

@@ -79,7 +79,7 @@ impl Places {
 
     #[inline(always)]
     fn tracked<C>(&self, i: usize, data: C) -> TrackedContact<C> {
-        let [fid1, fid2] = [0, 1].map(|side| PackedFeatureId(self.features[side][i]));
+        let [fid1, fid2] = both([0, 1], |side| PackedFeatureId(self.features[side][i]));
         TrackedContact {
             local_p1: self.point(0, i),
             local_p2: self.point(1, i),
@@ -121,14 +121,14 @@ impl Identities {
     #[inline(always)]
     fn new([first, second]: [[u32; MAX_POINTS]; 2], count: usize) -> Self {
         let counted = u32x4::new([0, 1, 2, 3]).simd_lt(u32x4::splat(count as u32));
-        let features = [first, second].map(|row| u32x4::new(row) & counted);
+        let features = both([first, second], |row| u32x4::new(row) & counted);
         Self(cache::identities(features))
     }
 
     /// A bit for each that is the same as one of the others.
     #[inline(always)]
     fn same(&self, others: &Self, one: usize) -> u32 {
-        let [a, b] = [0, 1].map(|side| {
+        let [a, b] = both([0, 1], |side| {
             let one = u32x4::splat(others.0[side].to_array()[one]);
             self.0[side].simd_eq(one)
         });
@@ -139,7 +139,7 @@ impl Identities {
 impl PartialEq for Identities {
     #[inline(always)]
     fn eq(&self, other: &Self) -> bool {
-        let [a, b] = [0, 1].map(|side| self.0[side] ^ other.0[side]);
+        let [a, b] = both([0, 1], |side| self.0[side] ^ other.0[side]);
         !(a | b).any()
     }
 }

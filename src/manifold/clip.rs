@@ -14,6 +14,7 @@ use glam::Vec2;
 use wide::f32x4;
 
 use super::polygon::{LANES, Polygon, Side};
+use crate::both::both;
 
 /// Where a corner of the intersection comes from. Indices are into the polygons as given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -180,7 +181,9 @@ impl Corners {
     #[inline(always)]
     pub fn fours(&self) -> impl Iterator<Item = [f32x4; 2]> {
         let rows = self.count.div_ceil(LANES);
-        let [x, y] = [&self.x, &self.y].map(|all| all.as_chunks::<LANES>().0[..rows].iter());
+        let [x, y] = both([&self.x, &self.y], |all| {
+            all.as_chunks::<LANES>().0[..rows].iter()
+        });
         x.zip(y).map(|(&x, &y)| [x.into(), y.into()])
     }
 

@@ -56,6 +56,18 @@ impl Chosen {
         self.len += 1;
     }
 
+    /// Their numbers, and others that mean nothing.
+    #[inline(always)]
+    fn numbers(&self) -> [usize; MAX_POINTS] {
+        let [a, b, c, d] = self.corners;
+        [
+            a.unwrap_or(0),
+            b.unwrap_or(0),
+            c.unwrap_or(0),
+            d.unwrap_or(0),
+        ]
+    }
+
     /// Those that there are. Which these are is not predictable.
     #[inline(always)]
     fn push_all(&mut self, corners: [Option<usize>; MAX_POINTS - 1]) {

@@ -146,16 +146,16 @@ impl<'s> Patch<'s> {
             }
         }
         let of_corner = lanes(of_corner);
-        let row = |of: &dyn Fn(usize) -> f32| {
-            let [a, b, c, d] = chosen.corners.map(|corner| of(corner.unwrap_or(0)));
-            f32x4::new([a, b, c, d])
-        };
+        let [a, b, c, d] = chosen.numbers();
+        let at = |corner| polygons.corners.at(corner);
+        let [at_a, at_b, at_c, at_d] = [at(a), at(b), at(c), at(d)];
         // The witness is the origin.
-        let x = of_corner & row(&|corner| polygons.corners.at(corner).x);
-        let y = of_corner & row(&|corner| polygons.corners.at(corner).y);
+        let x = of_corner & f32x4::new([at_a.x, at_b.x, at_c.x, at_d.x]);
+        let y = of_corner & f32x4::new([at_a.y, at_b.y, at_c.y, at_d.y]);
         let height = of_corner & self.surfaces[0].heights(x, y);
         let least = f32x4::splat(least as f32);
-        let measured = row(&|corner| candidates.distance(corner));
+        let far = |corner| candidates.distance(corner);
+        let measured = f32x4::new([far(a), far(b), far(c), far(d)]);
         let distance = of_corner.bitselect(measured.fast_max(least), least);
         Contacts {
             on_1: chart_1.points(x, y, height),
