@@ -42,9 +42,9 @@ impl Polygons {
     /// Finds the corners of the intersection of window and subject.
     #[inline]
     pub fn intersect(&mut self) {
-        let (sides, width) = (self.window.count, self.subject.width());
-        self.corners.begin(sides * (width + 1) + width);
-        if sides <= LANES && width == LANES && self.subject.count > 2 {
+        let subject = self.subject.count;
+        self.corners.count = 0;
+        if self.window.count <= LANES && (3..=LANES).contains(&subject) {
             self.intersect_few();
         } else {
             self.intersect_many();
@@ -135,22 +135,9 @@ pub(super) struct Corners {
 }
 
 impl Corners {
-    /// None so far, and at most so many.
-    #[inline]
-    pub fn begin(&mut self, most: usize) {
-        self.count = 0;
-        if self.sources.len() < most {
-            // They are read in fours.
-            let room = most.next_multiple_of(LANES);
-            self.x.resize(room, 0.0);
-            self.y.resize(room, 0.0);
-            self.sources.resize(room, 0);
-        }
-    }
-
     /// Becomes those of a polygon.
     pub fn set(&mut self, polygon: &Polygon) {
-        self.begin(polygon.count);
+        self.count = 0;
         for (r, row) in polygon.rows().iter().enumerate() {
             self.gather(polygon.real(r), LANES * r, &[row.x], &[row.y]);
         }
@@ -166,6 +153,9 @@ impl Corners {
         x: &[f32x4; ROWS],
         y: &[f32x4; ROWS],
     ) {
+        if self.sources.len() < self.count + LANES * ROWS {
+            self.grow(self.count + LANES * ROWS);
+        }
         let (x, y): (&[f32], &[f32]) = (bytemuck::cast_slice(x), bytemuck::cast_slice(y));
         while there != 0 {
             let i = there.trailing_zeros() as usize;
@@ -175,6 +165,15 @@ impl Corners {
             self.sources[self.count] = (source + i) as u32;
             self.count += 1;
         }
+    }
+
+    /// Makes room for so many and more, in fours, as they are read.
+    #[cold]
+    fn grow(&mut self, count: usize) {
+        let room = (2 * count).next_multiple_of(LANES);
+        self.x.resize(room, 0.0);
+        self.y.resize(room, 0.0);
+        self.sources.resize(room, 0);
     }
 
     /// Where they are, in fours.
