@@ -31,9 +31,17 @@ fn prism(sides: u32, noise: Real) -> SharedShape {
 fn update(manifolds: &mut Vec<Manifold>, shape: &SharedShape, pose: Pose) {
     let slab = SharedShape::cuboid(10.0, 1.0, 10.0);
     let pos12 = Pose::translation(0.0, 1.0, 0.0) * pose;
-    let dispatcher = IsaGjkDispatcher::default();
-    dispatcher
-        .contact_manifolds(&pos12, &*slab, &**shape, 0.02, manifolds, &mut None)
+    update_pair(manifolds, [&slab, shape], pos12, 0.02);
+}
+
+fn update_pair(
+    manifolds: &mut Vec<Manifold>,
+    [a, b]: [&SharedShape; 2],
+    pos12: Pose,
+    prediction: Real,
+) {
+    IsaGjkDispatcher::default()
+        .contact_manifolds(&pos12, &**a, &**b, prediction, manifolds, &mut None)
         .expect("supported");
 }
 
@@ -184,16 +192,7 @@ fn contacts_scale_with_the_shapes() {
         let pose = Pose::translation(0.0, 1.0, 0.0) * standing(Vector::new(1e-3, 0.4, 2e-3));
         let pos12 = Pose::from_parts(pose.translation * scale, pose.rotation);
         let mut manifolds: Vec<Manifold> = Vec::new();
-        IsaGjkDispatcher::default()
-            .contact_manifolds(
-                &pos12,
-                &*slab,
-                &*shape,
-                0.02 * scale,
-                &mut manifolds,
-                &mut None,
-            )
-            .expect("supported");
+        update_pair(&mut manifolds, [&slab, &shape], pos12, 0.02 * scale);
         let points = manifolds[0]
             .points
             .iter()
@@ -216,16 +215,8 @@ fn contacts_far_from_the_middle_of_a_large_shape_are_exact() {
     let shape = flat_box();
     let at = Vector::new(half - 0.25, 1.0 + HALF_HEIGHT - 1e-3, 300.5);
     let mut manifolds: Vec<Manifold> = Vec::new();
-    IsaGjkDispatcher::default()
-        .contact_manifolds(
-            &Pose::from_translation(at),
-            &*floor,
-            &*shape,
-            0.02,
-            &mut manifolds,
-            &mut None,
-        )
-        .expect("supported");
+    let pos12 = Pose::from_translation(at);
+    update_pair(&mut manifolds, [&floor, &shape], pos12, 0.02);
     let points = &manifolds[0].points;
     assert_eq!(points.len(), 4);
     // One rounding of coordinates of 500.

@@ -192,6 +192,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         });
         let unconstrained = n1;
         let [c1, c2] = self.constraints;
+        // Only parts of meshes have some.
         let is_possible = matches!((c1, c2), (Constraints::None, Constraints::None))
             || c1.with(|c1| {
                 c2.with(|c2| (c1, c2).project_local_normals(self.pos12, &mut n1, &mut n2))

@@ -13,6 +13,7 @@ use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::Arc;
 
+use glam::Vec3;
 use parry3d::shape::ConvexPolyhedron;
 
 use super::preparation::Preparation;
@@ -62,10 +63,10 @@ impl Slot {
         }
     }
 
-    /// Whether it was proved in the span that is under way: the points at its address are the same.
+    /// Whether it is of the points at its address: it was proved in the span that is under way, or is now.
     #[inline(always)]
-    fn is_proved(&self, span: Option<Span>) -> bool {
-        span.is_some() && self.span == span
+    fn is_of(&self, points: &[Vec3], span: Option<Span>) -> bool {
+        (span.is_some() && self.span == span) || self.prepared.is_of(points)
     }
 
     /// Notes that it was proved again. What it has, at its place in the table.
@@ -173,7 +174,7 @@ impl HullTable {
         let (known, place) = *self.recent.class(address);
         if known == address
             && let Some(slot) = self.slots.get_mut(place)
-            && (slot.is_proved(self.span) || slot.prepared.is_of(points))
+            && slot.is_of(points, self.span)
         {
             self.clock += 1;
             return slot.used(place, self.clock, self.span);
@@ -186,11 +187,7 @@ impl HullTable {
         let points = polyhedron.points();
         let address = points.as_ptr() as Address;
         let place = match self.entries.get(&address).copied() {
-            Some(i)
-                if self.slots[i].is_proved(self.span) || self.slots[i].prepared.is_of(points) =>
-            {
-                i
-            }
+            Some(i) if self.slots[i].is_of(points, self.span) => i,
             known => self.insert(address, polyhedron, known),
         };
         *self.recent.class(address) = (address, place);

@@ -23,7 +23,7 @@ pub(super) fn write_points<M, C: Default + Copy>(
     let count = contacts.len;
     let tracked = &mut manifold.points;
     let old = Identities::of(tracked);
-    let new = places.identities(count);
+    let new = Identities::new(places.features, count);
     if old == new && tracked.len() == count {
         for (i, tracked) in tracked.iter_mut().enumerate() {
             *tracked = places.tracked(i, tracked.data);
@@ -88,12 +88,6 @@ impl Places {
             fid2,
             data,
         }
-    }
-
-    /// Of so many; of the others, nothing.
-    #[inline(always)]
-    fn identities(&self, count: usize) -> Identities {
-        Identities::new(self.features, count)
     }
 }
 

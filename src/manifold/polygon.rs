@@ -58,6 +58,7 @@ impl Polygon {
         self.rows[0] = row;
     }
 
+    /// Apart from the one row that most polygons are, which is then made without a loop.
     #[inline(never)]
     fn set_many(&mut self, corners: &dyn Fn([usize; LANES]) -> [f32x4; 2]) {
         let rows = self.count.div_ceil(LANES);
@@ -96,7 +97,7 @@ impl Polygon {
     /// The bits of those corners of a row that do not fill up.
     #[inline(always)]
     pub fn real(&self, row: usize) -> u32 {
-        ALL >> LANES.saturating_sub(self.count - LANES * row)
+        first_lanes(self.count - LANES * row)
     }
 }
 
@@ -202,6 +203,12 @@ impl Side {
             there: (crosses & on_side).to_bitmask(),
         }
     }
+}
+
+/// The bits of the first lanes: so many, or all.
+#[inline(always)]
+pub(super) fn first_lanes(count: usize) -> u32 {
+    ALL >> LANES.saturating_sub(count)
 }
 
 /// A mask of the lanes whose bits are set.

@@ -7,7 +7,7 @@ use wide::f32x4;
 
 use super::MAX_POINTS;
 use super::clip::Corners;
-use super::polygon::{LANES, lanes};
+use super::polygon::{LANES, first_lanes, lanes};
 
 /// Corners to choose from, by their numbers.
 #[derive(Clone, Debug, Default)]
@@ -79,8 +79,9 @@ impl Greatest {
 }
 
 impl Candidates {
-    /// Becomes these corners, with the `distances` of a row at its places. Those whose distance is within `range` are wanted, those beyond it come
-    /// last, and those before it are none. What is nearer than `same` to the origin is there.
+    /// Becomes these corners, with the `distances` of a row at its places. Those whose distance is within
+    /// `range` are wanted, those beyond it come last, and those before it are none. What is nearer than
+    /// `same` to the origin is there.
     #[inline(always)]
     pub fn set(
         &mut self,
@@ -97,10 +98,9 @@ impl Candidates {
         let mut deepest = Greatest::above(f32::NEG_INFINITY);
         let mut at_origin = f32x4::ZERO;
         for (row, (four, [x, y])) in self.fours.iter_mut().zip(corners.fours()).enumerate() {
-            let left = corners.count - row * LANES;
-            let there = lanes((1 << left.min(LANES)) - 1);
             let distance = distances(row, x, y);
-            let there = there & distance.simd_ge(least);
+            let corners = lanes(first_lanes(corners.count - LANES * row));
+            let there = corners & distance.simd_ge(least);
             let near = there & distance.simd_le(most);
             deepest.look_at(row, -distance, near);
             at_origin |= near & (x * x + y * y).simd_le(f32x4::splat(same * same));
