@@ -27,7 +27,7 @@ const ALONE: u16 = u16::MAX;
 
 /// One cap.
 pub(super) struct Cap {
-    members: Vec<u16>,
+    pub members: Vec<u16>,
     /// Faces that are no members, but lie partly under the outline, where that cuts across a bay.
     bays: Vec<u16>,
     /// The corners of the convex outline.

@@ -19,9 +19,11 @@
 //! which a climb would lose more: with deeper dents, folds, or two layers. The limits are those
 //! measured in `tests/hill_climbing.rs`.
 
+use std::iter;
+
 use glam::{DVec3, Vec3};
 
-use super::graph::{EdgeGraph, Star};
+use super::graph::{EdgeGraph, LAST, Star};
 use super::top::{Highest, LANES, coordinates};
 use crate::stats::Cost;
 use crate::support::VertexId;
@@ -101,30 +103,32 @@ impl Slope<'_> {
         let star = self.graph.star(at);
         let mut highest = Highest::new(dir);
         self.look_at(star, 0, &mut highest);
-        if star.is_crowded() {
-            highest = self.look_further(at, highest);
+        if let Some(after) = self.graph.after(star) {
+            highest = self.look_further(after, highest);
         }
         let top = highest.top();
         let best = self.graph.neighbor(at, top.place);
         (best.unwrap_or(at), top.height)
     }
 
+    /// At the neighbours in a star, of which the first has this `place`.
     #[inline(always)]
-    fn look_at(&self, star: &Star, number: usize, highest: &mut Highest) {
+    fn look_at(&self, star: &Star, place: usize, highest: &mut Highest) {
         let to = star.to();
         let (fours, _) = to.as_chunks::<LANES>();
         for (i, four) in fours.iter().enumerate() {
             let corners = four.map(|w| &self.points[usize::from(w)]);
-            highest.look_at(number * fours.len() + i, coordinates(corners));
+            highest.look_at(place + i * LANES, coordinates(corners));
         }
     }
 
-    /// At the neighbours that are not in the star.
+    /// At those in the stars from `star` on.
     #[cold]
     #[inline(never)]
-    fn look_further(&self, at: VertexId, mut highest: Highest) -> Highest {
-        for (number, star) in (1..).zip(self.graph.more(at)) {
-            self.look_at(star, number, &mut highest);
+    fn look_further(&self, star: &Star, mut highest: Highest) -> Highest {
+        let stars = iter::successors(Some(star), |star| self.graph.after(star));
+        for (number, star) in (1..).zip(stars) {
+            self.look_at(star, number * LAST, &mut highest);
         }
         highest
     }

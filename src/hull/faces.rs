@@ -27,9 +27,20 @@ pub(super) struct Faces {
 struct Polygon {
     /// Rounded to f32; the offset is exact for that normal.
     normal: Vec3,
-    /// Its first corner; the others follow up to the next polygon's first.
+    /// Its first corner; the others follow up to the next polygon's first. With a mark.
     first: u32,
     offset: f64,
+}
+
+/// The mark of a face that belongs to a cap, so that of the others, which are most, nothing more need be
+/// read. No hull has so many corners.
+const IN_CAP: u32 = 1 << 31;
+
+impl Polygon {
+    #[inline]
+    fn first(&self) -> usize {
+        (self.first & !IN_CAP) as usize
+    }
 }
 
 /// A corner of a polygon.
@@ -153,6 +164,9 @@ impl Faces {
         };
         faces.polygons.pop();
         for cap in &caps {
+            for &member in &cap.members {
+                faces.polygons[usize::from(member)].first |= IN_CAP;
+            }
             let ends = cap.outline.iter().cycle().skip(1);
             let corner = |(&from, &to): (&u16, &u16)| Corner {
                 vertex: from,
@@ -181,7 +195,7 @@ impl Faces {
     #[inline]
     pub fn polygon(&self, face: FaceId) -> &[Corner] {
         let f = face as usize;
-        &self.corners[self.polygons[f].first as usize..self.polygons[f + 1].first as usize]
+        &self.corners[self.polygons[f].first()..self.polygons[f + 1].first()]
     }
 
     /// The name of the `i`-th edge of a face, or of an outline where that is an edge.
@@ -196,6 +210,9 @@ impl Faces {
     /// The cap around a face: the name of its outline, and the faces under that.
     #[inline]
     pub fn cap(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
+        if self.polygons[face as usize].first & IN_CAP == 0 {
+            return None;
+        }
         let (cap, faces) = self.caps.around(face)?;
         Some(((self.len() + cap) as FaceId, faces))
     }

@@ -11,16 +11,16 @@ const PLACE_BITS: u32 = 15;
 
 /// The neighbours of each vertex.
 #[derive(Clone, Debug)]
+#[repr(C)]
 pub(super) struct EdgeGraph {
     /// The first neighbours of each vertex, which of most vertices are all.
     stars: Box<[Star]>,
-    /// Where in `more` the others are, by vertex.
-    crowded: Box<[Crowded]>,
+    /// Those after them, in no order that matters.
     more: Box<[Star]>,
 }
 
 /// Neighbours of a vertex, clockwise seen from outside. It is filled up with the first one, which
-/// comes after the last one.
+/// comes after the last one. Where there are more, the last one is also the first in the next star.
 ///
 /// Each vertex has one, so that it is found without another look into memory; and by its alignment
 /// it is on one line of the cache.
@@ -29,26 +29,22 @@ pub(super) struct EdgeGraph {
 pub(super) struct Star {
     /// Ids of vertices; the highest bits of the first two are marks.
     to: [u16; STAR],
-    /// The face left of the edge to each of them. Right of it is that left of the next one.
+    /// The face left of the edge to each of them. Right of it is that left of the next one. Where there
+    /// are more neighbours, the last one is no face, but where their star is.
     left: [u16; STAR],
 }
 
 /// On a triangulated surface each vertex has six neighbours on the average.
 const STAR: usize = 8;
 
-#[derive(Clone, Copy, Debug)]
-struct Crowded {
-    vertex: u16,
-    first: u32,
-    end: u32,
-}
-
 /// A bit that no id of a vertex has.
 const MARK: u16 = 1 << 15;
 /// The neighbour whose mark says that at this vertex a tie must be looked into.
 const FRAGILE: usize = 0;
-/// The neighbour whose mark says that this vertex has more of them than one star holds.
+/// The neighbour whose mark says that there are more of them in another star.
 const CROWDED: usize = 1;
+/// The last place of a star, and how many neighbours it has that the next one has not.
+pub(super) const LAST: usize = STAR - 1;
 
 impl Star {
     /// From the sides that leave a vertex, of which the `first` is to fill up with.
@@ -58,6 +54,13 @@ impl Star {
             to: sides.map(|side| side.to),
             left: sides.map(|side| face_of[triangle(side.half_edge)]),
         }
+    }
+
+    /// With others after it.
+    fn with_more(mut self, place: usize) -> Self {
+        self.to[CROWDED] |= MARK;
+        self.left[LAST] = place as u16;
+        self
     }
 
     /// The neighbours.
@@ -75,36 +78,40 @@ impl Star {
         self.to[FRAGILE] & MARK != 0
     }
 
-    /// Whether the vertex has more neighbours than these.
+    /// Whether the vertex has others after these.
     #[inline(always)]
     pub fn is_crowded(&self) -> bool {
         self.to[CROWDED] & MARK != 0
+    }
+
+    /// The faces left of the edges to them, but for the last one where there are others after it.
+    #[inline(always)]
+    fn left(&self) -> [u16; STAR] {
+        let mut left = self.left;
+        if self.is_crowded() {
+            left[LAST] = left[0];
+        }
+        left
     }
 }
 
 impl EdgeGraph {
     /// From a surface whose triangles went to the faces `face_of`.
     pub fn new(surface: &Surface<'_>, face_of: &[u16]) -> Self {
-        let (mut crowded, mut more) = (Vec::new(), Vec::new());
+        let mut more = Vec::new();
         let stars = (0..surface.vertex_count()).map(|v| {
             let around = surface.leaving(v as u32);
-            let mut of_vertex = around
-                .chunks(STAR)
-                .map(|sides| Star::new(sides, &around[0], face_of));
-            let mut star = of_vertex.next().expect("a vertex has neighbours");
-            let first = more.len() as u32;
-            more.extend(of_vertex);
-            let end = more.len() as u32;
-            if end > first {
-                star.to[CROWDED] |= MARK;
-                let vertex = v as u16;
-                crowded.push(Crowded { vertex, first, end });
-            }
-            star
+            let star = |sides| Star::new(sides, &around[0], face_of);
+            // From the last one on, so that each knows where the next is.
+            let last = (around.len() - 2) / LAST;
+            (1..=last).rev().fold(star(&around[last * LAST..]), |after, number| {
+                more.push(after);
+                let sides = &around[(number - 1) * LAST..][..STAR];
+                star(sides).with_more(more.len() - 1)
+            })
         });
         Self {
             stars: stars.collect(),
-            crowded: crowded.into(),
             more: more.into(),
         }
     }
@@ -124,37 +131,29 @@ impl EdgeGraph {
         &self.stars[vertex as usize]
     }
 
-    /// The others.
-    #[cold]
-    pub fn more(&self, vertex: VertexId) -> &[Star] {
-        let vertex_of = |crowded: &Crowded| VertexId::from(crowded.vertex);
-        let found = self.crowded.binary_search_by_key(&vertex, vertex_of);
-        found.map_or(&[], |i| {
-            let Crowded { first, end, .. } = self.crowded[i];
-            &self.more[first as usize..end as usize]
-        })
+    /// The star after this one, if there are more neighbours.
+    #[inline(always)]
+    pub fn after(&self, star: &Star) -> Option<&Star> {
+        star.is_crowded()
+            .then(|| &self.more[usize::from(star.left[LAST])])
     }
 
     #[inline(always)]
     fn stars(&self, vertex: VertexId) -> impl Iterator<Item = &Star> + Clone {
-        let star = self.star(vertex);
-        let more = if star.is_crowded() {
-            self.more(vertex)
-        } else {
-            &[]
-        };
-        iter::once(star).chain(more)
+        iter::successors(Some(self.star(vertex)), |star| self.after(star))
     }
 
     /// The star with this place, and the place in it; there may be neither vertex nor place.
     #[inline(always)]
-    fn find(&self, vertex: VertexId, place: usize) -> Option<(&Star, usize)> {
-        let star = self.stars.get(vertex as usize)?;
-        if place < STAR {
-            return Some((star, place));
+    fn find(&self, vertex: VertexId, mut place: usize) -> Option<(&Star, usize)> {
+        let mut star = self.stars.get(vertex as usize)?;
+        while place >= LAST
+            && let Some(after) = self.after(star)
+        {
+            star = after;
+            place -= LAST;
         }
-        let more = self.more(vertex).get(place / STAR - 1)?;
-        Some((more, place % STAR))
+        (place < STAR).then_some((star, place))
     }
 
     /// The neighbour in a place.
@@ -173,7 +172,7 @@ impl EdgeGraph {
     /// The faces around a vertex, some of them more than once.
     #[inline]
     pub fn faces_at(&self, vertex: VertexId) -> impl Iterator<Item = [u16; STAR]> + Clone {
-        self.stars(vertex).map(|star| star.left)
+        self.stars(vertex).map(Star::left)
     }
 
     /// The name of an edge, the same for both directions.
@@ -191,7 +190,7 @@ impl EdgeGraph {
         for (s, star) in self.stars(low).enumerate() {
             for (i, w) in star.to().into_iter().enumerate() {
                 let is_first = (VertexId::from(w) == high) & (place == NONE);
-                place = if is_first { s * STAR + i } else { place };
+                place = if is_first { s * LAST + i } else { place };
             }
         }
         (place != NONE).then_some(place as u16)
@@ -213,7 +212,7 @@ impl EdgeGraph {
     }
 
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.stars) + size_of_val(&*self.crowded) + size_of_val(&*self.more)
+        size_of_val(&*self.stars) + size_of_val(&*self.more)
     }
 }
 

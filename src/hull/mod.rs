@@ -31,14 +31,17 @@ use start::StartTable;
 /// A convex polytope with everything precomputed that a query needs.
 ///
 /// Lengths are in the units of the points it was built from, positions in their frame.
+// In this order, and aligned, so that what proves most pairs apart is on one line of the cache: the ball, and
+// where points and neighbours are.
 #[derive(Clone, Debug)]
+#[repr(C, align(64))]
 pub struct Hull {
-    points: Box<[Vec3]>,
-    search: Search,
-    graph: EdgeGraph,
-    faces: Faces,
     center: DVec3,
     radius: f64,
+    points: Box<[Vec3]>,
+    graph: EdgeGraph,
+    faces: Faces,
+    search: Search,
 }
 
 /// How extreme vertices are found.

@@ -31,14 +31,14 @@ impl Highest {
         }
     }
 
-    /// Looks at the four points, coordinate by coordinate, that have this number.
+    /// Looks at four points, coordinate by coordinate, of which the first has this place.
     #[inline(always)]
-    pub fn look_at(&mut self, number: usize, coordinates: [[f32; LANES]; 3]) {
+    pub fn look_at(&mut self, place: usize, coordinates: [[f32; LANES]; 3]) {
         let [x, y, z] = coordinates;
         let [x, y, z] = [widened(x), widened(y), widened(z)];
         let heights = x * self.dir[0] + y * self.dir[1] + z * self.dir[2];
         let higher = heights.simd_gt(self.heights);
-        let places = u64x4::splat((number * LANES) as u64) + u64x4::new([0, 1, 2, 3]);
+        let places = u64x4::splat(place as u64) + u64x4::new([0, 1, 2, 3]);
         self.heights = higher.bitselect(heights, self.heights);
         self.places = higher.bitselect(bytemuck::cast(places), self.places);
     }
