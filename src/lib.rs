@@ -98,7 +98,7 @@
 //! assert!((near.signed_distance - 0.5).abs() < 1e-9);
 //! # Ok::<(), isa_gjk::HullError>(())
 //! ```
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 
 #[cfg(feature = "bevy")]
 pub mod bevy;

@@ -436,17 +436,23 @@ fn nonsensical_manifold(n1: Vector, n2: Vector, points: u32) -> Manifold {
     manifold
 }
 
+/// Small and large hulls are known again in different ways.
+const SIZES: [usize; 2] = [30, 200];
+
 /// New hulls with the same number of corners, so that the allocator hands out old addresses.
 #[test]
 fn replaced_shapes_are_answered_as_they_are() {
-    const CORNERS: usize = 24;
-    let mut report = Report::new("replaced shapes");
+    SIZES.into_iter().for_each(check_replaced_shapes);
+}
+
+fn check_replaced_shapes(corners: usize) {
+    let mut report = Report::new(format!("replaced shapes of {corners} corners"));
     let mut dice = Dice::new(6);
     let dispatcher = IsaGjkDispatcher::default();
     let mut memory = Memory::default();
     let mut addresses = Vec::new();
-    for turn in 0..400 {
-        let [a, b] = [(); 2].map(|()| dice.hull(CORNERS, 1.0));
+    for turn in 0..200 {
+        let [a, b] = [(); 2].map(|()| dice.hull(corners, 1.0));
         addresses.push(std::ptr::from_ref(&*a.shape).addr());
         let scene = random_scene(&mut dice, &a, &b, 0.9);
         let id = format!("turn {turn}");
@@ -507,15 +513,18 @@ fn scale_in_place(hull: &mut Hull, scale: Vector) {
 
 #[test]
 fn shapes_mutated_in_place_are_answered_as_they_are() {
-    const CORNERS: usize = 30;
-    let mut report = Report::new("shapes mutated in place");
+    SIZES.into_iter().for_each(check_shapes_mutated_in_place);
+}
+
+fn check_shapes_mutated_in_place(corners: usize) {
+    let mut report = Report::new(format!("shapes of {corners} corners mutated in place"));
     let mut dice = Dice::new(7);
     let dispatcher = IsaGjkDispatcher::default();
     let mut memory = Memory::default();
-    let [mut a, b] = [(); 2].map(|()| dice.hull(CORNERS, 1.0));
-    for turn in 0..300 {
+    let [mut a, b] = [(); 2].map(|()| dice.hull(corners, 1.0));
+    for turn in 0..150 {
         let route = if turn % 3 == 0 {
-            replace_in_place(&mut a, dice.hull(CORNERS, 1.0));
+            replace_in_place(&mut a, dice.hull(corners, 1.0));
             "replaced"
         } else {
             let scale = Vector::splat(if turn % 3 == 1 { 1.5 } else { 0.5 });

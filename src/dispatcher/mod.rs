@@ -6,6 +6,7 @@ mod composite;
 mod compound;
 mod constraints;
 mod convex;
+mod digest;
 mod half_space;
 mod hulls;
 mod mesh;
@@ -54,7 +55,7 @@ impl IsaGjkDispatcher {
     }
 
     /// Runs `step`, in which no collider's shape is changed, replaced or dropped: then a plain hull is
-    /// compared with the prepared one in its first pair only, not in each.
+    /// proved to be the prepared one in its first pair only, not in each.
     ///
     /// A step of a world is such a thing. The promise is for all shapes that the contacts of this
     /// dispatcher and its clones are asked about meanwhile, in any thread; where it does not hold,

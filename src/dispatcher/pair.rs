@@ -36,11 +36,13 @@ thread_local! {
 }
 
 /// A hull with a rounded border of this radius around it.
+#[derive(Clone, Copy)]
 struct Prepared<'a> {
     place: Place<'a>,
     border: f64,
 }
 
+#[derive(Clone, Copy)]
 enum Place<'a> {
     /// The shape brings it along.
     Own(&'a Hull),
@@ -238,7 +240,12 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
         [true, true] => WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
             hulls.begin(span);
             let first = side_1.prepare(hulls)?;
-            let second = side_2.prepare(hulls)?;
+            // Two colliders with one shape, which many worlds are full of, need one proof.
+            let second = if std::ptr::addr_eq(side_1.shape, side_2.shape) {
+                first
+            } else {
+                side_2.prepare(hulls)?
+            };
             let pair = Pair {
                 hull: first.hull(hulls)?,
                 other: second.hull(hulls)?,

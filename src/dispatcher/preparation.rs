@@ -10,6 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError, Weak};
 use glam::Vec3;
 use parry3d::shape::ConvexPolyhedron;
 
+use super::digest::Digest;
 use crate::hull::Hull;
 use crate::hull::topology::{fingerprint, same_points};
 
@@ -19,14 +20,23 @@ use crate::hull::topology::{fingerprint, same_points};
 pub(super) struct Preparation {
     /// `None` where no hull can be built: such a shape is left to parry.
     hull: Option<Hull>,
-    /// The points it was built from, where they are not the hull's own.
-    source: Option<Box<[Vec3]>>,
+    source: Source,
+}
+
+/// By what the points are known again that it was built from.
+#[derive(Debug)]
+enum Source {
+    /// Many, by a digest.
+    Digest(Box<Digest>),
+    /// They are the hull's own.
+    Hull,
+    Points(Box<[Vec3]>),
 }
 
 impl Preparation {
     /// That of another polyhedron with the same points and edges, if one is in use; else a new one.
     ///
-    /// Points are compared. Edges count by the fingerprint: should it ever deceive, the hull has other
+    /// Points are compared, of many the digest. Edges count by the fingerprint: should it ever deceive, the hull has other
     /// diagonals on its faces, and is as good.
     pub fn of(polyhedron: &ConvexPolyhedron) -> Arc<Self> {
         let key = fingerprint(polyhedron);
@@ -48,20 +58,22 @@ impl Preparation {
         let points = polyhedron.points();
         let hull = Hull::try_from(polyhedron).ok();
         let own = hull.as_ref().map(Hull::points);
-        let is_own = own.is_some_and(|own| same_points(own, points));
-        Self {
-            source: (!is_own).then(|| points.into()),
-            hull,
-        }
+        let source = match Digest::of(points) {
+            Some(digest) => Source::Digest(digest.into()),
+            None if own.is_some_and(|own| same_points(own, points)) => Source::Hull,
+            None => Source::Points(points.into()),
+        };
+        Self { hull, source }
     }
 
-    /// Whether it was made of these points.
+    /// Whether it was made of these points; of many, up to the chance that [`Digest`] leaves.
     #[inline]
     pub fn is_of(&self, points: &[Vec3]) -> bool {
-        match (&self.source, &self.hull) {
-            (Some(source), _) => same_points(source, points),
-            (None, Some(hull)) => same_points(hull.points(), points),
-            (None, None) => false,
+        let own = || self.hull.as_ref().map_or(&[][..], Hull::points);
+        match &self.source {
+            Source::Digest(digest) => digest.is_of(points),
+            Source::Hull => same_points(own(), points),
+            Source::Points(source) => same_points(source, points),
         }
     }
 
@@ -72,7 +84,11 @@ impl Preparation {
 
     pub fn bytes(&self) -> usize {
         let hull = self.hull.as_ref().map_or(0, Hull::heap_bytes);
-        let source = self.source.as_ref().map_or(0, |s| size_of_val(&**s));
+        let source = match &self.source {
+            Source::Points(points) => size_of_val(&**points),
+            Source::Digest(_) => size_of::<Digest>(),
+            Source::Hull => 0,
+        };
         size_of::<Self>() + hull + source
     }
 }

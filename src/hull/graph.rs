@@ -104,11 +104,13 @@ impl EdgeGraph {
             let star = |sides| Star::new(sides, &around[0], face_of);
             // From the last one on, so that each knows where the next is.
             let last = (around.len() - 2) / LAST;
-            (1..=last).rev().fold(star(&around[last * LAST..]), |after, number| {
-                more.push(after);
-                let sides = &around[(number - 1) * LAST..][..STAR];
-                star(sides).with_more(more.len() - 1)
-            })
+            (1..=last)
+                .rev()
+                .fold(star(&around[last * LAST..]), |after, number| {
+                    more.push(after);
+                    let sides = &around[(number - 1) * LAST..][..STAR];
+                    star(sides).with_more(more.len() - 1)
+                })
         });
         Self {
             stars: stars.collect(),
@@ -226,4 +228,63 @@ fn split(id: u32) -> (VertexId, usize) {
 #[inline]
 pub(super) fn edge_at(low: VertexId, place: u16) -> u32 {
     low << PLACE_BITS | u32::from(place)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::TAU;
+
+    use glam::Vec3;
+
+    use super::*;
+    use crate::Hull;
+    use crate::support::{FaceId, Polytope};
+
+    /// A pyramid over a regular polygon: its top has as many neighbours as that has sides.
+    fn pyramid(sides: usize) -> Hull {
+        let corner = |i: usize| {
+            let (sin, cos) = (TAU * i as f32 / sides as f32).sin_cos();
+            Vec3::new(cos, 0.0, sin)
+        };
+        let points: Vec<Vec3> = (0..sides).map(corner).chain([Vec3::Y]).collect();
+        Hull::from_points(&points).expect("a solid pyramid")
+    }
+
+    #[test]
+    fn edges_and_faces_are_found_around_vertices_with_any_number_of_neighbors() {
+        for sides in (3..40).chain([200]) {
+            let hull = pyramid(sides);
+            let vertices = 0..hull.points().len() as VertexId;
+            let top = vertices.clone().find(|&v| hull.vertex(v).y > 0.5);
+            let top = top.expect("a pyramid has a top");
+            let mut around: Vec<u16> = hull.graph.neighbors(top).collect();
+            around.sort_unstable();
+            around.dedup();
+            assert_eq!(around.len(), sides);
+            for v in vertices {
+                let mut faces: Vec<u16> = hull.graph.faces_at(v).flatten().collect();
+                faces.sort_unstable();
+                faces.dedup();
+                let has = |f: &u16, v| {
+                    let f = FaceId::from(*f);
+                    (0..hull.face_len(f)).any(|i| hull.face_vertex(f, i) == v)
+                };
+                let all: Vec<u16> = (0..hull.face_count() as u16)
+                    .filter(|f| has(f, v))
+                    .collect();
+                assert_eq!(faces, all, "{sides} sides, around {v}");
+                for w in hull.graph.neighbors(v).map(VertexId::from) {
+                    let id = hull.edge_id(v, w).expect("neighbours have an edge");
+                    assert_eq!(hull.edge(id), Some([v.min(w), v.max(w)]));
+                    let mut beside = hull.graph.faces_beside(id).expect("an edge has faces");
+                    beside.sort_unstable();
+                    let both: Vec<u16> = all.iter().copied().filter(|f| has(f, w)).collect();
+                    assert!(both == beside || beside[0] == beside[1] && both.contains(&beside[0]));
+                }
+            }
+            let beyond = hull.points().len() + STAR;
+            assert_eq!(hull.graph.neighbor(top, beyond), None);
+            assert_eq!(hull.graph.neighbor(beyond as VertexId, 0), None);
+        }
+    }
 }

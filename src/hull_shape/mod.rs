@@ -1,7 +1,7 @@
 //! [`HullShape`]: a convex hull for colliders that carries everything prepared with it.
 //!
 //! With plain `SharedShape::convex_hull` colliders the dispatcher looks its prepared hull up in
-//! a table, and proves by comparing all points that it found the right one; and rapier scans all
+//! a table, and proves by a look at all points that it found the right one; and rapier scans all
 //! points for the bounding box in every frame. A `HullShape` brings its prepared hull along and
 //! finds its bounding box by six climbs, so that no part of a frame costs time in proportion to
 //! the number of vertices (but continuous collision detection, see below).
@@ -35,8 +35,8 @@
 //!
 //! # Memory
 //! The polyhedron costs about 250 bytes per vertex and the prepared hull about 130
-//! ([`Hull::heap_bytes`]). A plain collider costs the same where our dispatcher answers, and 12 bytes
-//! per vertex for comparison, in the order of its polyhedron.
+//! ([`Hull::heap_bytes`]). A plain collider costs the same where our dispatcher answers, and up
+//! to 150 vertices 12 bytes for each, for comparison in the order of its polyhedron.
 
 mod bounds;
 mod features;
