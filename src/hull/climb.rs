@@ -71,7 +71,8 @@ pub(super) fn extreme_vertex(
 }
 
 /// As [`extreme_vertex`], in many directions. Their climbs take the first step together: it is the one
-/// from memory that is in no cache, and so the processor waits for all of it at once.
+/// from memory that is in no cache, and so the processor waits for all of it at once. Half of them need
+/// no other.
 #[inline]
 pub(super) fn extreme_vertices<const N: usize>(
     slope: Slope<'_>,
@@ -79,13 +80,18 @@ pub(super) fn extreme_vertices<const N: usize>(
     starts: [VertexId; N],
 ) -> [VertexId; N] {
     let mut vertices = starts;
-    for (vertex, &dir) in vertices.iter_mut().zip(&dirs) {
-        let (best, height) = slope.best_neighbor(dir, *vertex);
-        let is_better = height > slope.height(dir, *vertex);
-        *vertex = if is_better { best } else { *vertex };
+    let mut arrived = [false; N];
+    for (i, &dir) in dirs.iter().enumerate() {
+        let start = starts[i];
+        let (best, height) = slope.best_neighbor(dir, start);
+        let is_better = height > slope.height(dir, start);
+        arrived[i] = !is_better & !slope.graph.star(start).is_fragile();
+        vertices[i] = if is_better { best } else { start };
     }
-    for (vertex, &dir) in vertices.iter_mut().zip(&dirs) {
-        *vertex = extreme_vertex(slope, dir, *vertex, &mut Cost::default());
+    for (i, &dir) in dirs.iter().enumerate() {
+        if !arrived[i] {
+            vertices[i] = extreme_vertex(slope, dir, vertices[i], &mut Cost::default());
+        }
     }
     vertices
 }

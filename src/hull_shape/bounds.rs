@@ -7,7 +7,7 @@ use parry3d::math::{Pose, Vector};
 use super::HullShape;
 
 /// A scan of so many points takes as long as six climbs, and its memory is no surprise.
-const SCAN_UP_TO: usize = 300;
+const SCAN_UP_TO: usize = 180;
 
 impl HullShape {
     /// The box around the hull at a pose, its axes those of the world.
