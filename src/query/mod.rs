@@ -28,15 +28,16 @@ use crate::simplex::Preferred;
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
 use crate::tolerance::DEPTH_GAP;
-use feature::{Seeds, Verdict};
+use feature::{Seeds, Side, Verdict};
 
 /// Tangent of the angle by which a direction is turned towards where the next facet is to be
 /// expected. Hulls of a hundred vertices have dihedral angles around it; any value is correct.
 const TILT: f64 = 0.2;
 
-/// A contact rolls over to the next facet or the one after; one that is not found by then is not
-/// near, or the nearest point is no facet's, and GJK finds it in fewer steps.
-const MAX_WALK: usize = 6;
+/// A contact rolls over to the next facet or the one after, on hulls of a thousand vertices over some
+/// more; one that is not found by then is not near, or the nearest point is no facet's, and GJK finds it
+/// in fewer steps.
+const MAX_WALK: usize = 10;
 
 /// Shapes that are farther apart than this share of their size are mostly nearest at vertices and
 /// edges. A query that wants to know so far leaves these to GJK, without a walk over facets.
@@ -158,6 +159,9 @@ fn tilted(axis: DVec3, too_near: &CsoVertex) -> DVec3 {
     (axis - sideways.normalize_or_zero() * TILT).normalize()
 }
 
+/// The facet to look at next, if there is one, and the ends of where it was looked for.
+type Way = (Option<[Feature; 2]>, [[VertexId; 2]; 2]);
+
 impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     /// Answers from `memory` where that is possible, cold otherwise. `None` only if the shapes
     /// have no volume between them or are not finite.
@@ -248,12 +252,12 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                 Verdict::Unproved(candidate) => return self.find_depth(&candidate, gjk),
                 Verdict::Beyond(side) => {
                     let [from, to] = side.ends;
-                    if crossed == Some([to, from]) {
-                        // Back over the same side: what is nearest lies on it.
-                        (None, side.ends)
-                    } else {
-                        crossed = Some(side.ends);
-                        (walk::across(self.cso, &side), side.ends)
+                    // A facet that has its face of shape 2 goes around the other way.
+                    let back = crossed == Some([to, from]) || crossed == Some([from, to]);
+                    crossed = Some(side.ends);
+                    match walk::across(self.cso, &side) {
+                        Some(next) if !back && next != features => (Some(next), side.ends),
+                        _ => self.leave(features, &side, normal, tolerance),
                     }
                 }
                 Verdict::Cut(vertex, normal) => {
@@ -281,6 +285,22 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             steps_left -= 1;
             stage = Stage::Walk;
         }
+    }
+
+    /// Where the way over a side leads back. Two edges may span no facet at these poses, and any plane
+    /// then: they are left by the vertex that is extreme along `normal`. Else the nearest point lies on the
+    /// side.
+    fn leave(&mut self, features: [Feature; 2], side: &Side, normal: DVec3, tolerance: f64) -> Way {
+        if let [Feature::Edge(_), Feature::Edge(_)] = features {
+            let [from, _] = side.ends;
+            let vertex = self.cso.support(side.normal, from, self.cost);
+            if side.normal.dot(vertex.w - self.cso.vertex(from).w) > tolerance {
+                let vertex = self.cso.support(normal, vertex.ids, self.cost);
+                let next = walk::around(self.cso, &vertex, normal);
+                return (next, [vertex.ids; 2]);
+            }
+        }
+        (None, side.ends)
     }
 
     /// The depth, which may be proved to be the candidate's by a polytope of a previous frame. If not
