@@ -14,6 +14,7 @@
 //! accuracy: nothing is believed that is not re-evaluated at the present poses.
 
 mod corner;
+mod fan;
 mod feature;
 mod walk;
 
@@ -187,6 +188,11 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
     }
 
+    /// Bounds of a depth that are no farther apart than this are one.
+    fn tolerance(&self) -> f64 {
+        DEPTH_GAP * self.cso.smaller_radius()
+    }
+
     fn is_far_sighted(&self) -> bool {
         self.max_distance > FAR * self.cso.size()
     }
@@ -240,7 +246,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         mut stage: Stage,
         gjk: [Stage; 2],
     ) -> Option<(Answer, Stage)> {
-        let tolerance = DEPTH_GAP * self.cso.smaller_radius();
+        let tolerance = self.tolerance();
         let mut crossed = None;
         let mut steps_left = if self.is_far_sighted() { 0 } else { MAX_WALK };
         loop {
@@ -249,7 +255,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             let (next, ends) = match verdict {
                 Verdict::Apart(apart) => return Some((Answer::Apart(apart), stage)),
                 Verdict::Certified(proximity) => return Some((Answer::Near(proximity), stage)),
-                Verdict::Unproved(candidate) => return self.find_depth(&candidate, gjk),
+                Verdict::Unproved(candidate) => return self.find_depth(&candidate, stage, gjk),
                 Verdict::Beyond(side) => {
                     let [from, to] = side.ends;
                     // A facet that has its face of shape 2 goes around the other way.
@@ -303,15 +309,23 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         (None, side.ends)
     }
 
-    /// The depth, which may be proved to be the candidate's by a polytope of a previous frame. If not
-    /// EPA grows one from points near the candidate; where it finds the shapes separate, GJK finds how
-    /// far.
-    fn find_depth(&mut self, candidate: &Proximity, gjk: [Stage; 2]) -> Option<(Answer, Stage)> {
+    /// The depth, which may be proved to be the candidate's by a polytope of a previous frame, or by the
+    /// facets around. If not EPA grows one from points near the candidate; where it finds the shapes
+    /// separate, GJK finds how far.
+    fn find_depth(
+        &mut self,
+        candidate: &Proximity,
+        stage: Stage,
+        gjk: [Stage; 2],
+    ) -> Option<(Answer, Stage)> {
         let known = -candidate.signed_distance;
         if let Some((shells, key)) = &mut self.shells
             && shells.prove(*key, self.cso, known, self.scratch, self.cost)
         {
             return Some((Answer::Near(*candidate), Stage::Shell));
+        }
+        if fan::holds_ball(self.cso, candidate, self.tolerance()) {
+            return Some((Answer::Near(*candidate), stage));
         }
         let seeds = Seeds::under(self.cso, candidate.features);
         let (cso, seeds) = (self.cso, seeds.as_slice());
