@@ -111,21 +111,17 @@ mod tests {
         )
     }
 
-    fn digest(points: &[Vec3]) -> Option<Digest> {
-        assert!(is_x86_feature_detected!("aes"), "nothing to test here");
-        Digest::of(points)
-    }
-
     #[test]
-    fn few_points_have_none() {
-        assert!(digest(&[Vec3::ONE; FEWEST - 1]).is_none());
-        assert!(digest(&[Vec3::ONE; FEWEST]).is_some());
+    fn many_points_have_one_where_there_are_rounds() {
+        assert!(Digest::of(&[Vec3::ONE; FEWEST - 1]).is_none());
+        let many = Digest::of(&[Vec3::ONE; FEWEST]);
+        assert_eq!(many.is_some(), is_x86_feature_detected!("aes"));
     }
 
     proptest! {
         #[test]
         fn the_same_points_are_known_again(points in points(FEWEST..400)) {
-            let digest = digest(&points).expect("enough points");
+            let Some(digest) = Digest::of(&points) else { return Ok(()) };
             prop_assert!(digest.is_of(&points.clone()));
         }
 
@@ -136,7 +132,7 @@ mod tests {
             new in points(1..=9),
             at in any::<prop::sample::Index>(),
         ) {
-            let digest = digest(&points).expect("enough points");
+            let Some(digest) = Digest::of(&points) else { return Ok(()) };
             let at = at.index(points.len() - new.len());
             let mut changed = points.clone();
             changed[at..at + new.len()].copy_from_slice(&new);
@@ -151,7 +147,7 @@ mod tests {
                 .iter()
                 .map(|p| p.map(|x| f32::from_bits(x.to_bits() % (1 << 30)) + 0.1))
                 .collect();
-            let digest = digest(&points).expect("enough points");
+            let Some(digest) = Digest::of(&points) else { return Ok(()) };
             let each = |change: fn(Vec3) -> Vec3| points.iter().copied().map(change).collect();
             let mut moved_on = points.clone();
             moved_on.rotate_left(shift);
@@ -173,7 +169,7 @@ mod tests {
 
         #[test]
         fn another_number_of_points_is_another_hull(points in points(FEWEST..400), more in 1_usize..20) {
-            let digest = digest(&points).expect("enough points");
+            let Some(digest) = Digest::of(&points) else { return Ok(()) };
             let mut longer = points.clone();
             longer.extend(vec![Vec3::ZERO; more]);
             prop_assert!(!digest.is_of(&longer));
