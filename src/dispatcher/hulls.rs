@@ -3,8 +3,8 @@
 //! A dispatcher is handed bare references: it cannot know whether the polyhedron at an address
 //! is the one that was there before. So each use compares the polyhedron's points with those the
 //! hull was built from (a `memcmp`, some 20 ns for 100 vertices; of large hulls a `Digest` of them,
-//! 130 ns for 1,000). Equal points have an equal hull, whatever the allocator or the user did in between; the table is a pure function of the
-//! shapes, and no answer depends on its history. Where the user promises that no shape changes for
+//! 130 ns for 1,000). Equal points have an equal hull, whatever the allocator or the user did in
+//! between; the table is a pure function of the shapes, and no answer depends on its history. Where the user promises that no shape changes for
 //! a while, the first use in that span compares for all of them.
 //!
 //! Each thread has a table of its own, which needs no lock; the hulls themselves are shared.

@@ -36,8 +36,8 @@ enum Source {
 impl Preparation {
     /// That of another polyhedron with the same points and edges, if one is in use; else a new one.
     ///
-    /// Points are compared, of many the digest. Edges count by the fingerprint: should it ever deceive, the hull has other
-    /// diagonals on its faces, and is as good.
+    /// Points are compared, of many the digest. Edges count by the fingerprint: should it ever deceive,
+    /// the hull has other diagonals on its faces, and is as good.
     pub fn of(polyhedron: &ConvexPolyhedron) -> Arc<Self> {
         let key = fingerprint(polyhedron);
         let points = polyhedron.points();
@@ -69,10 +69,11 @@ impl Preparation {
     /// Whether it was made of these points; of many, up to the chance that [`Digest`] leaves.
     #[inline]
     pub fn is_of(&self, points: &[Vec3]) -> bool {
-        let own = || self.hull.as_ref().map_or(&[][..], Hull::points);
         match &self.source {
             Source::Digest(digest) => digest.is_of(points),
-            Source::Hull => same_points(own(), points),
+            Source::Hull => {
+                (self.hull.as_ref()).is_some_and(|own| same_points(own.points(), points))
+            }
             Source::Points(source) => same_points(source, points),
         }
     }

@@ -8,8 +8,8 @@ use super::graph::EdgeGraph;
 use crate::support::FaceId;
 use crate::tolerance::CAP_ANGLE_COS;
 
-/// For each face that belongs to a cap, the cap; for each cap, the faces under its outline in a
-/// row.
+/// For each face that belongs to a cap, which faces know of themselves, the cap; for each cap, the
+/// faces under its outline in a row.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Caps {
     /// Empty if there are no caps.
@@ -21,9 +21,6 @@ pub(super) struct Caps {
 /// A cap has no more members than these, so that one contact is never the work of thousands of
 /// faces. What is left of a larger flat region becomes a cap beside it.
 const MAX_MEMBERS: usize = 64;
-
-/// The face is a cap of its own.
-const ALONE: u16 = u16::MAX;
 
 /// One cap.
 pub(super) struct Cap {
@@ -39,7 +36,7 @@ impl Caps {
         if caps.is_empty() {
             return Self::default();
         }
-        let mut of_face = vec![ALONE; face_count];
+        let mut of_face = vec![0; face_count];
         let mut first = vec![0];
         let mut faces = Vec::new();
         for (i, cap) in caps.iter().enumerate() {
@@ -57,15 +54,12 @@ impl Caps {
         }
     }
 
-    /// The number of the cap that `face` belongs to, and all faces under its outline.
+    /// The number of the cap that `face`, which is in one, belongs to, and all faces under its outline.
     #[inline]
-    pub fn around(&self, face: FaceId) -> Option<(usize, &[u16])> {
-        let cap = *self.of_face.get(face as usize)?;
-        (cap != ALONE).then(|| {
-            let cap = cap as usize;
-            let faces = self.first[cap] as usize..self.first[cap + 1] as usize;
-            (cap, &self.faces[faces])
-        })
+    pub fn around(&self, face: FaceId) -> (usize, &[u16]) {
+        let cap = usize::from(self.of_face[face as usize]);
+        let faces = self.first[cap] as usize..self.first[cap + 1] as usize;
+        (cap, &self.faces[faces])
     }
 
     pub fn heap_bytes(&self) -> usize {

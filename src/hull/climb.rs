@@ -19,8 +19,6 @@
 //! which a climb would lose more: with deeper dents, folds, or two layers. The limits are those
 //! measured in `tests/hill_climbing.rs`.
 
-use std::iter;
-
 use glam::{DVec3, Vec3};
 
 use super::graph::{EdgeGraph, LAST, Star};
@@ -132,8 +130,7 @@ impl Slope<'_> {
     #[cold]
     #[inline(never)]
     fn look_further(&self, star: &Star, mut highest: Highest) -> Highest {
-        let stars = iter::successors(Some(star), |star| self.graph.after(star));
-        for (number, star) in (1..).zip(stars) {
+        for (number, star) in (1..).zip(self.graph.stars_from(star)) {
             self.look_at(star, number * LAST, &mut highest);
         }
         highest

@@ -213,7 +213,7 @@ impl Faces {
         if self.polygons[face as usize].first & IN_CAP == 0 {
             return None;
         }
-        let (cap, faces) = self.caps.around(face)?;
+        let (cap, faces) = self.caps.around(face);
         Some(((self.len() + cap) as FaceId, faces))
     }
 

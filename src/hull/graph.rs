@@ -140,9 +140,15 @@ impl EdgeGraph {
             .then(|| &self.more[usize::from(star.left[LAST])])
     }
 
+    /// A star and those after it.
+    #[inline(always)]
+    pub fn stars_from<'a>(&'a self, star: &'a Star) -> impl Iterator<Item = &'a Star> + Clone {
+        iter::successors(Some(star), |star| self.after(star))
+    }
+
     #[inline(always)]
     fn stars(&self, vertex: VertexId) -> impl Iterator<Item = &Star> + Clone {
-        iter::successors(Some(self.star(vertex)), |star| self.after(star))
+        self.stars_from(self.star(vertex))
     }
 
     /// The star with this place, and the place in it; there may be neither vertex nor place.

@@ -67,7 +67,7 @@ impl Hull {
     /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 118 bytes
     /// per vertex: 12 for the point, 32 for the neighbours and the faces between them, 48 for the
     /// planes of two faces, 24 for their corners and edges, 2 for the start table. A vertex with more
-    /// than eight neighbours costs 44 more. Joined faces cost less; nearly coplanar ones, of which a
+    /// than eight neighbours costs 32 more. Joined faces cost less; nearly coplanar ones, of which a
     /// finely triangulated round hull is full, some 20 bytes per vertex more. Hulls that are scanned
     /// have 12 bytes per vertex for that instead of the table.
     pub fn heap_bytes(&self) -> usize {

@@ -10,7 +10,7 @@ use std::array;
 
 use glam::DVec3;
 
-use super::feature::{Feature, Side};
+use super::feature::{Feature, Side, ball_is_inside};
 use super::{Proximity, walk};
 use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
 
@@ -32,14 +32,15 @@ pub(super) fn holds_ball<A: Polytope, B: Polytope>(
         radius: (-facet.signed_distance - tolerance).max(0.0),
         tolerance,
     };
-    let Some(here) = Facet::new(cso, facet.features, facet.normal) else {
+    let Some(here) = Facet::new(cso, facet.features) else {
         return false;
     };
-    let open = |&i: &usize| !pyramids.hold_ball(&here, i);
-    let sides = 0..here.len;
-    sides.clone().filter(open).count() <= MAX_SIDES
-        && sides.filter(open).all(|i| {
-            let across = walk::across(cso, &here.side(i));
+    let open: [bool; MAX_CORNERS] =
+        array::from_fn(|i| i < here.len && !pyramids.hold_ball(&here, i));
+    let mut open_sides = (0..here.len).filter(|&i| open[i]);
+    open_sides.clone().count() <= MAX_SIDES
+        && open_sides.all(|i| {
+            let across = walk::across(cso, &here.side(i, facet.normal));
             let there = across.and_then(|next| pyramids.facet(cso, next));
             there.is_some_and(|there| pyramids.hold_rest([&here, &there], i))
         })
@@ -60,15 +61,15 @@ impl Pyramids {
         cso: &Cso<'_, A, B>,
         features: [Feature; 2],
     ) -> Option<Facet> {
-        let facet = Facet::new(cso, features, DVec3::ZERO)?;
+        let facet = Facet::new(cso, features)?;
         let [a, b, c] = [0, 1, 2].map(|i| facet.corners[i].w);
         let normal = (b - a).cross(c - a).try_normalize()?;
         let height = normal.dot(a - self.apex);
-        let normal = normal * height.signum();
+        let outward = normal * height.signum();
         let corners = &facet.corners[..facet.len];
-        let is_beyond = |corner: &CsoVertex| normal.dot(corner.w) >= self.radius;
+        let is_beyond = |corner: &CsoVertex| outward.dot(corner.w) >= self.radius;
         let has_room = height.abs() > self.tolerance && corners.iter().all(is_beyond);
-        has_room.then_some(Facet { normal, ..facet })
+        has_room.then_some(facet)
     }
 
     /// Through a side and the apex: a normal of that plane, and how far the facet's middle is to its side.
@@ -81,9 +82,7 @@ impl Pyramids {
     /// Whether the ball is inside of the plane through a side.
     fn hold_ball(&self, facet: &Facet, i: usize) -> bool {
         let (normal, middle) = self.side_plane(facet, i);
-        let inward = normal * middle.signum();
-        let height = -inward.dot(facet.corners[i].w);
-        height >= 0.0 && height * height >= self.radius * self.radius * inward.length_squared()
+        ball_is_inside(facet.corners[i].w, normal * middle.signum(), self.radius)
     }
 
     /// Whether the second facet is across the side `i` of the first one, and the ball inside of all of its
@@ -108,25 +107,19 @@ impl Pyramids {
 struct Facet {
     corners: [CsoVertex; MAX_CORNERS],
     len: usize,
-    normal: DVec3,
     /// A point inside.
     middle: DVec3,
 }
 
 impl Facet {
-    /// That of these features, with its outward normal.
-    fn new<A: Polytope, B: Polytope>(
-        cso: &Cso<'_, A, B>,
-        features: [Feature; 2],
-        normal: DVec3,
-    ) -> Option<Self> {
+    /// That of these features.
+    fn new<A: Polytope, B: Polytope>(cso: &Cso<'_, A, B>, features: [Feature; 2]) -> Option<Self> {
         let (ids, len) = corners(cso, features)?;
         let corners = ids.map(|ids| cso.vertex(ids));
         let sum: DVec3 = corners[..len].iter().map(|corner| corner.w).sum();
         Some(Self {
             corners,
             len,
-            normal,
             middle: sum / len as f64,
         })
     }
@@ -135,13 +128,13 @@ impl Facet {
         [&self.corners[i], &self.corners[(i + 1) % self.len]]
     }
 
-    /// A side as walks know it.
-    fn side(&self, i: usize) -> Side {
+    /// A side as walks know it, of the facet with this outward normal.
+    fn side(&self, i: usize, normal: DVec3) -> Side {
         let [from, to] = self.ends(i);
-        let outward = (to.w - from.w).cross(self.normal);
+        let outward = (to.w - from.w).cross(normal);
         Side {
             ends: [from.ids, to.ids],
-            normal: self.normal,
+            normal,
             outward: outward * outward.dot(from.w - self.middle).signum(),
         }
     }
@@ -181,18 +174,12 @@ mod tests {
     use super::*;
     use crate::epa::{self, EpaScratch};
     use crate::hull::Hull;
-    use crate::pose::RelativePose;
     use crate::query::feature::{self, Seeds, Verdict};
+    use crate::query::walk::tests::{direction, random_pose};
     use crate::stats::Cost;
     use glam::Vec3;
-    use parry3d::math::Pose;
 
     const TOLERANCE: f64 = 1e-6;
-
-    fn direction(dice: &mut oorandom::Rand64) -> DVec3 {
-        let [x, y, z] = [(); 3].map(|()| dice.rand_float() - 0.5);
-        DVec3::new(x, y, z).normalize()
-    }
 
     fn hull(dice: &mut oorandom::Rand64) -> Hull {
         let sizes = [(); 3].map(|()| 0.4 + 0.6 * dice.rand_float());
@@ -211,9 +198,7 @@ mod tests {
         let [mut proved, mut others] = [0; 2];
         for _ in 0..3000 {
             let hulls = [hull(&mut dice), hull(&mut dice)];
-            let away = direction(&mut dice) * 1.8 * dice.rand_float();
-            let turn = direction(&mut dice) * 6.0 * dice.rand_float();
-            let pose = RelativePose::from_valid(&Pose::new(away.as_vec3(), turn.as_vec3()));
+            let pose = random_pose(1.8, &mut dice);
             let cso = Cso {
                 shape_1: &hulls[0],
                 shape_2: &hulls[1],

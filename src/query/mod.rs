@@ -261,9 +261,10 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                     // A facet that has its face of shape 2 goes around the other way.
                     let back = crossed == Some([to, from]) || crossed == Some([from, to]);
                     crossed = Some(side.ends);
-                    match walk::across(self.cso, &side) {
-                        Some(next) if !back && next != features => (Some(next), side.ends),
-                        _ => self.leave(features, &side, normal, tolerance),
+                    let across = (!back).then(|| walk::across(self.cso, &side)).flatten();
+                    match across {
+                        Some(next) if next != features => (Some(next), side.ends),
+                        _ => self.leave(features, &side, normal),
                     }
                 }
                 Verdict::Cut(vertex, normal) => {
@@ -275,9 +276,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                     {
                         return Some((answer, stage));
                     }
-                    let start = feature::vertices(self.cso, features);
-                    let vertex = self.cso.support(normal, start, self.cost);
-                    (walk::around(self.cso, &vertex, normal), [vertex.ids; 2])
+                    self.start_anew(normal, feature::vertices(self.cso, features))
                 }
             };
             match next {
@@ -296,17 +295,21 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     /// Where the way over a side leads back. Two edges may span no facet at these poses, and any plane
     /// then: they are left by the vertex that is extreme along `normal`. Else the nearest point lies on the
     /// side.
-    fn leave(&mut self, features: [Feature; 2], side: &Side, normal: DVec3, tolerance: f64) -> Way {
+    fn leave(&mut self, features: [Feature; 2], side: &Side, normal: DVec3) -> Way {
         if let [Feature::Edge(_), Feature::Edge(_)] = features {
             let [from, _] = side.ends;
             let vertex = self.cso.support(side.normal, from, self.cost);
-            if side.normal.dot(vertex.w - self.cso.vertex(from).w) > tolerance {
-                let vertex = self.cso.support(normal, vertex.ids, self.cost);
-                let next = walk::around(self.cso, &vertex, normal);
-                return (next, [vertex.ids; 2]);
+            if side.normal.dot(vertex.w - self.cso.vertex(from).w) > self.tolerance() {
+                return self.start_anew(normal, vertex.ids);
             }
         }
         (None, side.ends)
+    }
+
+    /// To a facet at the vertex that is extreme along `normal`.
+    fn start_anew(&mut self, normal: DVec3, start: [VertexId; 2]) -> Way {
+        let vertex = self.cso.support(normal, start, self.cost);
+        (walk::around(self.cso, &vertex, normal), [vertex.ids; 2])
     }
 
     /// The depth, which may be proved to be the candidate's by a polytope of a previous frame, or by the

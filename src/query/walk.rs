@@ -152,7 +152,7 @@ impl Ridge {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::hull::Hull;
     use crate::query::feature::{self, Verdict};
@@ -165,9 +165,16 @@ mod tests {
         Hull::from_points(&points).expect("points on a ball are their own hull")
     }
 
-    fn direction(dice: &mut oorandom::Rand64) -> DVec3 {
+    pub fn direction(dice: &mut oorandom::Rand64) -> DVec3 {
         let [x, y, z] = [(); 3].map(|()| dice.rand_float() - 0.5);
         DVec3::new(x, y, z).normalize()
+    }
+
+    /// Turned anyhow, and up to `far` away.
+    pub fn random_pose(far: f64, dice: &mut oorandom::Rand64) -> RelativePose {
+        let turn = direction(dice) * 6.0 * dice.rand_float();
+        let away = direction(dice) * far * dice.rand_float();
+        RelativePose::from_valid(&Pose::new(away.as_vec3(), turn.as_vec3()))
     }
 
     /// Of all vertices of the difference, how far the outermost is beyond the plane of `features`.
@@ -186,9 +193,7 @@ mod tests {
         let mut crossed = 0;
         for _ in 0..200 {
             let hulls = [40, 12].map(|count| ball_of_points(count, &mut dice));
-            let turn = direction(&mut dice) * 6.0 * dice.rand_float();
-            let away = direction(&mut dice) * 3.0 * dice.rand_float();
-            let pose = RelativePose::from_valid(&Pose::new(away.as_vec3(), turn.as_vec3()));
+            let pose = random_pose(3.0, &mut dice);
             let cso = Cso {
                 shape_1: &hulls[0],
                 shape_2: &hulls[1],

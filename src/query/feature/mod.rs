@@ -16,6 +16,7 @@ mod polygon;
 mod seeds;
 mod verdict;
 
+pub(super) use polygon::ball_is_inside;
 pub(super) use seeds::Seeds;
 pub(super) use verdict::{Side, Verdict};
 

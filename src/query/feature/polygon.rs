@@ -49,16 +49,22 @@ pub(super) fn side_beyond(
 /// polygon, counter-clockwise seen from outside, whose apex is beneath it.
 #[inline]
 pub(super) fn pyramid_holds_ball(mut corners: impl Corners, apex: DVec3, depth: f64) -> bool {
-    let depth = depth.max(0.0);
     let Some(mut from) = corners.clone().next_back() else {
         return false;
     };
     corners.all(|to| {
-        let inward = (to - from).cross(apex - from);
-        let height = -inward.dot(from);
+        let (corner, inward) = (from, (to - from).cross(apex - from));
         from = to;
-        height >= 0.0 && height * height >= depth * depth * inward.length_squared()
+        ball_is_inside(corner, inward, depth)
     })
+}
+
+/// Whether the ball around the origin with this radius, which may be negative, is inside of the plane
+/// through a corner.
+#[inline]
+pub(in crate::query) fn ball_is_inside(corner: DVec3, inward: DVec3, radius: f64) -> bool {
+    let (height, radius) = (-inward.dot(corner), radius.max(0.0));
+    height >= 0.0 && height * height >= radius * radius * inward.length_squared()
 }
 
 /// Where the lines `a + s along_1` and `b + t along_2`, `offset` being `a - b`, are nearest.
