@@ -44,7 +44,7 @@ impl PairVisitor for Cast<'_> {
 
     const CURVED: bool = true;
 
-    fn visit<B: Polytope>(self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer> {
+    fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer> {
         self.cast(pair, |cso, velocity, seen| {
             self.overlap(cso, velocity, seen, scratch)
         })
@@ -52,7 +52,7 @@ impl PairVisitor for Cast<'_> {
 
     /// How deep they overlap is parry's to say.
     fn visit_curved<B: Support>(
-        self,
+        &mut self,
         pair: &Pair<'_, B>,
         _: &dyn PolygonalFeatureMap,
         _: &mut Scratch,

@@ -44,7 +44,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
 
     // In a call the pair would go through memory, which small queries notice.
     #[inline(always)]
-    fn visit<B: Polytope>(self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<()> {
+    fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<()> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
         }
@@ -59,25 +59,26 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             cache::renew_axis(self.manifold, axis, frame, || cso.start(axis));
             return Some(());
         }
-        let (answer, stage) = Query {
+        let answer = Query {
             cso: &cso,
             max_distance,
             shells: Some((&mut scratch.shells, key_of(self.manifold))),
             scratch: &mut scratch.epa,
             cost: &mut cost,
         }
-        .run_near(&cache::read(self.manifold, pair.swapped, frame))?;
-        self.stats.record(stage, &cost);
+        .run_near(&cache::read(self.manifold, pair.swapped, frame));
+        let (answer, stage) = answer.as_ref()?;
+        self.stats.record(*stage, &cost);
         match answer {
-            Answer::Apart(apart) => cache::write_axis(self.manifold, &apart, frame),
+            Answer::Apart(apart) => cache::write_axis(self.manifold, apart, frame),
             Answer::Near(near) => {
-                self.write_contacts(pair, &cso, &near, max_distance, &mut scratch.clip);
+                self.write_contacts(pair, &cso, near, max_distance, &mut scratch.clip);
             }
         }
         Some(())
     }
 
-    fn visit_half_space(self, pair: &Pair<'_, HalfSpace>, scratch: &mut Scratch) -> Option<()> {
+    fn visit_half_space(&mut self, pair: &Pair<'_, HalfSpace>, scratch: &mut Scratch) -> Option<()> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
         }
@@ -107,7 +108,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
     }
 
     fn visit_curved<B: Support>(
-        self,
+        &mut self,
         pair: &Pair<'_, B>,
         features: &dyn PolygonalFeatureMap,
         scratch: &mut Scratch,
@@ -152,7 +153,7 @@ fn normals(near: &Proximity, pose: &RelativePose) -> [DVec3; 2] {
 impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
     /// To the routine for shapes with features, which searches with extreme vertices of the hull: ours
     /// climbs to them.
-    fn leave_to_parry<B>(self, pair: &Pair<'_, B>, features: &dyn PolygonalFeatureMap) {
+    fn leave_to_parry<B>(&mut self, pair: &Pair<'_, B>, features: &dyn PolygonalFeatureMap) {
         let rotation = self.pos12.rotation;
         cache::turn_axis(self.manifold, pair.swapped, rotation);
         let hull: &dyn PolygonalFeatureMap = pair.hull;
@@ -179,7 +180,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
     }
 
     fn write_contacts<B: Polytope>(
-        self,
+        &mut self,
         pair: &Pair<'_, B>,
         cso: &Cso<'_, Hull, B>,
         near: &Proximity,

@@ -109,11 +109,11 @@ pub(super) trait PairVisitor: Sized {
     const CURVED: bool = false;
 
     /// The other shape is a polytope.
-    fn visit<B: Polytope>(self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer>;
+    fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer>;
 
     /// The other shape is a half-space.
     fn visit_half_space(
-        self,
+        &mut self,
         pair: &Pair<'_, HalfSpace>,
         scratch: &mut Scratch,
     ) -> Option<Self::Answer> {
@@ -124,7 +124,7 @@ pub(super) trait PairVisitor: Sized {
     /// The other shape is a cylinder or a cone, which has no faces for our kernels; for parry's routines
     /// it has `features`.
     fn visit_curved<B: Support>(
-        self,
+        &mut self,
         pair: &Pair<'_, B>,
         features: &dyn PolygonalFeatureMap,
         scratch: &mut Scratch,
@@ -234,7 +234,7 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
     mut side_1: Side<'a, impl Find<'a>>,
     mut side_2: Side<'b, impl Find<'b>>,
     span: Option<Span>,
-    visitor: V,
+    mut visitor: V,
 ) -> Option<V::Answer> {
     match [side_1.is_hull(), side_2.is_hull()] {
         [true, true] => WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
@@ -279,7 +279,7 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
 
     /// Visits the hull and another shape; `None` if that is not known, or too flat or too small.
     #[inline(never)]
-    fn visit<V: PairVisitor>(self, other: &dyn Shape, visitor: V) -> Option<V::Answer> {
+    fn visit<V: PairVisitor>(self, other: &dyn Shape, mut visitor: V) -> Option<V::Answer> {
         match other.shape_type() {
             ShapeType::Cuboid => {
                 let cuboid = others::cuboid(other.as_cuboid()?)?;
@@ -337,7 +337,7 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
         self,
         other: &impl Polytope,
         border: Real,
-        visitor: V,
+        mut visitor: V,
     ) -> Option<V::Answer> {
         self.with(other, border, |pair, scratch| visitor.visit(pair, scratch))
     }
@@ -347,7 +347,7 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
         self,
         other: &(impl Curved + PolygonalFeatureMap),
         border: Real,
-        visitor: V,
+        mut visitor: V,
     ) -> Option<V::Answer> {
         self.with(&other.kernel()?, border, |pair, scratch| {
             visitor.visit_curved(pair, other, scratch)

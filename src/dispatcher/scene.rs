@@ -189,12 +189,12 @@ impl PairVisitor for SeparationQuery<'_> {
 
     const CURVED: bool = true;
 
-    fn visit<B: Polytope>(self, pair: &Pair<'_, B>, _: &mut Scratch) -> Option<Self::Answer> {
+    fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, _: &mut Scratch) -> Option<Self::Answer> {
         self.separation(pair, GJK_ABSOLUTE_GAP)
     }
 
     fn visit_curved<B: Support>(
-        self,
+        &mut self,
         pair: &Pair<'_, B>,
         _: &dyn PolygonalFeatureMap,
         _: &mut Scratch,
@@ -202,7 +202,7 @@ impl PairVisitor for SeparationQuery<'_> {
         self.separation(pair, GJK_CURVED_GAP)
     }
 
-    fn visit_half_space(self, pair: &Pair<'_, HalfSpace>, _: &mut Scratch) -> Option<Self::Answer> {
+    fn visit_half_space(&mut self, pair: &Pair<'_, HalfSpace>, _: &mut Scratch) -> Option<Self::Answer> {
         let near = over_half_space(pair, self.pos12)?;
         let is_near = near.signed_distance <= f64::from(self.max_distance);
         Some(if is_near {
@@ -235,7 +235,7 @@ impl PairVisitor for ContactQuery<'_> {
 
     const CURVED: bool = true;
 
-    fn visit<B: Polytope>(self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer> {
+    fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer> {
         let pose = valid_pose(pair, self.pos12)?;
         let (answer, _) = Query {
             cso: &pair.cso(&pose),
@@ -256,7 +256,7 @@ impl PairVisitor for ContactQuery<'_> {
 
     /// How deep they overlap is parry's to say.
     fn visit_curved<B: Support>(
-        self,
+        &mut self,
         pair: &Pair<'_, B>,
         _: &dyn PolygonalFeatureMap,
         _: &mut Scratch,
@@ -272,7 +272,7 @@ impl PairVisitor for ContactQuery<'_> {
         }
     }
 
-    fn visit_half_space(self, pair: &Pair<'_, HalfSpace>, _: &mut Scratch) -> Option<Self::Answer> {
+    fn visit_half_space(&mut self, pair: &Pair<'_, HalfSpace>, _: &mut Scratch) -> Option<Self::Answer> {
         let near = over_half_space(pair, self.pos12)?;
         let within = near.signed_distance <= f64::from(self.prediction);
         Some(within.then(|| near.contact()))
