@@ -134,7 +134,7 @@ pub struct SeparatingAxis {
 /// One support pair along a cached `axis` (unit, frame 1): is it still separating by more than
 /// `beyond`? The incremental part of separating-axis GJK. Also returns the vertex found, with
 /// which a GJK run can go on.
-#[inline]
+#[inline(always)]
 pub fn test_axis<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     axis: DVec3,

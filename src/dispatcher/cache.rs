@@ -65,7 +65,7 @@ impl<'a> AxisFrame<'a> {
 }
 
 /// Reads what the previous frame left. `swapped`: the manifold's second shape is the kernels' first.
-#[inline]
+#[inline(always)]
 pub(super) fn read<M, C>(
     manifold: &ContactManifold<M, C>,
     swapped: bool,
@@ -109,7 +109,7 @@ pub(super) fn renew_axis<M, C>(
 }
 
 /// Leaves a separating axis in a manifold without points.
-#[inline]
+#[inline(always)]
 pub(super) fn write_axis<M, C>(
     manifold: &mut ContactManifold<M, C>,
     apart: &SeparatingAxis,

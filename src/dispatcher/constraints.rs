@@ -1,6 +1,8 @@
 //! Corrections of contact normals, for the internal edges of meshes.
 
-use parry3d::query::details::NormalConstraints;
+use glam::Vec3;
+use parry3d::math::Pose;
+use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::shape::TrianglePseudoNormals;
 
 /// What corrects the normals of a part's contacts. Computing it may cost more than finding out that
@@ -28,4 +30,17 @@ impl<'a> Constraints<'a> {
             },
         }
     }
+}
+
+/// The normals of a contact, each as its own shape sees it, corrected. `None` if there can be no contact
+/// along them.
+#[inline(never)]
+pub(super) fn project(
+    [c1, c2]: [Constraints<'_>; 2],
+    pos12: &Pose,
+    [mut n1, mut n2]: [Vec3; 2],
+) -> Option<[Vec3; 2]> {
+    let is_possible =
+        c1.with(|c1| c2.with(|c2| (c1, c2).project_local_normals(pos12, &mut n1, &mut n2)));
+    is_possible.then_some([n1, n2])
 }

@@ -1,13 +1,13 @@
 //! The contact manifold of two convex shapes, coherently.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use parry3d::math::{Pose, Real};
 use parry3d::query::ContactManifold;
-use parry3d::query::details::{NormalConstraintsPair, contact_manifold_pfm_pfm};
+use parry3d::query::details::contact_manifold_pfm_pfm;
 use parry3d::shape::PolygonalFeatureMap;
 
 use super::cache::{self, AxisFrame};
-use super::constraints::Constraints;
+use super::constraints::{self, Constraints};
 use super::half_space;
 use super::others::HalfSpace;
 use super::pair::{Pair, PairVisitor, Scratch};
@@ -16,7 +16,7 @@ use crate::both::both;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch};
 use crate::pose::RelativePose;
-use crate::query::{Answer, Proximity, Query};
+use crate::query::{Answer, Memory, Proximity, Query};
 use crate::stats::{Cost, SharedStats, Stage};
 use crate::support::{Cso, Polytope, Support};
 
@@ -59,14 +59,24 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             cache::renew_axis(self.manifold, axis, frame, || cso.start(axis));
             return Some(());
         }
-        let answer = Query {
+        let mut query = Query {
             cso: &cso,
             max_distance,
             shells: Some((&mut scratch.shells, key_of(self.manifold))),
             scratch: &mut scratch.epa,
             cost: &mut cost,
-        }
-        .run_near(&cache::read(self.manifold, pair.swapped, frame));
+        };
+        let answer = match cache::read(self.manifold, pair.swapped, frame) {
+            Memory::Axis(axis, ids) => match query.test_axis(axis, ids) {
+                Ok(apart) => {
+                    self.stats.record(Stage::Axis, &cost);
+                    cache::write_axis(self.manifold, &apart, frame);
+                    return Some(());
+                }
+                Err(vertex) => query.leave_axis(axis, &vertex),
+            },
+            memory => query.run_near(&memory),
+        };
         let (answer, stage) = answer.as_ref()?;
         self.stats.record(*stage, &cost);
         match answer {
@@ -188,22 +198,15 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         scratch: &mut ClipScratch,
     ) {
         let swapped = pair.swapped;
-        let [mut n1, mut n2] = both(cache::ordered(normals(near, cso.pose), swapped), |n| {
+        let normals = both(cache::ordered(normals(near, cso.pose), swapped), |n| {
             n.as_vec3()
         });
-        let unconstrained = n1;
-        let [c1, c2] = self.constraints;
-        // Only parts of meshes have some.
-        let is_possible = matches!((c1, c2), (Constraints::None, Constraints::None))
-            || c1.with(|c1| {
-                c2.with(|c2| (c1, c2).project_local_normals(self.pos12, &mut n1, &mut n2))
-            });
-        if !is_possible {
+        let Some([n1, n2]) = self.constrained(normals) else {
             // Discarded: there is no contact, but there is a place to start from.
             cache::write_start(self.manifold, near, cso);
             return;
-        }
-        let contacts = if n1 == unconstrained {
+        };
+        let contacts = if n1 == normals[0] {
             manifold::contacts(cso, near, max_distance, scratch)
         } else {
             let [normal, _] = cache::ordered([n1, n2], swapped);
@@ -214,5 +217,15 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         self.manifold.local_n1 = n1;
         self.manifold.local_n2 = n2;
         write_points(self.manifold, &contacts, pair.borders, swapped);
+    }
+
+    /// The contact's normals as the constraints leave them, if they do.
+    #[inline(always)]
+    fn constrained(&self, normals: [Vec3; 2]) -> Option<[Vec3; 2]> {
+        match self.constraints {
+            // Only parts of meshes have some.
+            [Constraints::None, Constraints::None] => Some(normals),
+            constraints => constraints::project(constraints, self.pos12, normals),
+        }
     }
 }

@@ -94,7 +94,8 @@ pub fn contacts<A: Polytope, B: Polytope>(
         polygons,
         candidates,
     } = scratch;
-    let Some(patch) = Patch::new(cso, proximity, proximity.normal, planes) else {
+    let patch = Patch::new(cso, proximity, proximity.normal, planes);
+    let Some(patch) = &patch else {
         return Contacts::witness(proximity, cso.pose);
     };
     // Along the query's normal nothing is deeper than the query's answer.
@@ -146,7 +147,8 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
         polygons,
         candidates,
     } = scratch;
-    let Some(patch) = Patch::new(cso, proximity, normal, planes) else {
+    let patch = Patch::new(cso, proximity, normal, planes);
+    let Some(patch) = &patch else {
         return Contacts::new(&[]);
     };
     patch.clip(cso, polygons);

@@ -207,9 +207,25 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     ) -> Option<(Answer, Stage)> {
         let vertex = match gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost) {
             Ok(apart) => return Some((Answer::Apart(apart), Stage::Axis)),
-            Err(vertex) if self.is_far_sighted() => return self.run_gjk(&[vertex], gjk),
             Err(vertex) => vertex,
         };
+        self.turn_axis(axis, &vertex, gjk)
+    }
+
+    #[inline(always)]
+    pub(crate) fn test_axis(&mut self, axis: DVec3, ids: [VertexId; 2]) -> Result<SeparatingAxis, CsoVertex> {
+        gjk::test_axis(self.cso, axis, self.valid_start(ids), self.max_distance, self.cost)
+    }
+
+    pub(crate) fn leave_axis(&mut self, axis: DVec3, vertex: &CsoVertex) -> Option<(Answer, Stage)> {
+        self.turn_axis(axis, vertex, WARM)
+    }
+
+    fn turn_axis(&mut self, axis: DVec3, vertex: &CsoVertex, gjk: [Stage; 2]) -> Option<(Answer, Stage)> {
+        let vertex = *vertex;
+        if self.is_far_sighted() {
+            return self.run_gjk(&[vertex], gjk);
+        }
         let tilted = tilted(axis, &vertex);
         match gjk::test_axis(self.cso, tilted, vertex.ids, self.max_distance, self.cost) {
             Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),

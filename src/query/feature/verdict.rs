@@ -51,7 +51,7 @@ impl Side {
 impl Verdict {
     /// From the frame of shape 2, with the shapes swapped, to frame 1.
     #[inline]
-    pub(super) fn mirrored(self, pose: &RelativePose) -> Self {
+    pub(super) fn mirrored(&self, pose: &RelativePose) -> Self {
         let direction = |dir| -pose.direction_to_1(dir);
         match self {
             Self::Apart(apart) => Self::Apart(SeparatingAxis {
@@ -59,7 +59,7 @@ impl Verdict {
                 separation: apart.separation,
                 ids: swapped(apart.ids),
             }),
-            Self::Certified(proximity) => Self::Certified(mirrored(&proximity, pose)),
+            Self::Certified(proximity) => Self::Certified(mirrored(proximity, pose)),
             Self::Beyond(side) => Self::Beyond(Side {
                 ends: both(side.ends, swapped),
                 normal: direction(side.normal),
@@ -71,9 +71,9 @@ impl Verdict {
                     on_1: pose.point_to_1(vertex.on_2()),
                     ids: swapped(vertex.ids),
                 };
-                Self::Cut(vertex, direction(normal))
+                Self::Cut(vertex, direction(*normal))
             }
-            Self::Unproved(candidate) => Self::Unproved(mirrored(&candidate, pose)),
+            Self::Unproved(candidate) => Self::Unproved(mirrored(candidate, pose)),
             Self::NoPlane => Self::NoPlane,
         }
     }
