@@ -16,7 +16,7 @@ use crate::both::both;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch};
 use crate::pose::RelativePose;
-use crate::query::{Answer, Memory, Proximity, Query};
+use crate::query::{Answer, Memory, Proximity, Query, Verdict};
 use crate::stats::{Cost, SharedStats, Stage};
 use crate::support::{Cso, Polytope, Support};
 
@@ -75,7 +75,16 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                 }
                 Err(vertex) => query.leave_axis(axis, &vertex),
             },
-            memory => query.run_near(&memory),
+            Memory::Contact(normal, features) => {
+                let verdict = query.certify(features);
+                if let Verdict::Certified(near) = &verdict {
+                    self.stats.record(Stage::Feature, &cost);
+                    self.write_contacts(pair, &cso, near, max_distance, &mut scratch.clip);
+                    return Some(());
+                }
+                query.leave_contact(normal, features, &verdict)
+            }
+            Memory::None => query.run_near(&Memory::None),
         };
         let (answer, stage) = answer.as_ref()?;
         self.stats.record(*stage, &cost);

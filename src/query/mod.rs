@@ -20,6 +20,8 @@ mod walk;
 
 pub use feature::{Feature, vertices};
 
+use std::ops::ControlFlow;
+
 use glam::DVec3;
 
 use crate::both::both;
@@ -29,7 +31,8 @@ use crate::simplex::Preferred;
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
 use crate::tolerance::DEPTH_GAP;
-use feature::{Seeds, Side, Verdict};
+use feature::{Seeds, Side};
+pub(crate) use feature::Verdict;
 
 /// Tangent of the angle by which a direction is turned towards where the next facet is to be
 /// expected. Hulls of a hundred vertices have dihedral angles around it; any value is correct.
@@ -160,6 +163,15 @@ fn tilted(axis: DVec3, too_near: &CsoVertex) -> DVec3 {
     (axis - sideways.normalize_or_zero() * TILT).normalize()
 }
 
+struct Trail {
+    normal: DVec3,
+    features: [Feature; 2],
+    crossed: Option<[[VertexId; 2]; 2]>,
+    steps_left: usize,
+    stage: Stage,
+    gjk: [Stage; 2],
+}
+
 /// The facet to look at next, if there is one, and the ends of where it was looked for.
 type Way = (Option<[Feature; 2]>, [[VertexId; 2]; 2]);
 
@@ -258,54 +270,84 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     fn follow(
         &mut self,
         normal: DVec3,
-        mut features: [Feature; 2],
-        mut stage: Stage,
+        features: [Feature; 2],
+        stage: Stage,
         gjk: [Stage; 2],
     ) -> Option<(Answer, Stage)> {
+        self.go_on(Trail { normal, features, crossed: None, steps_left: self.steps(), stage, gjk })
+    }
+
+    fn steps(&self) -> usize { if self.is_far_sighted() { 0 } else { MAX_WALK } }
+
+    #[inline(always)]
+    pub(crate) fn certify(&mut self, features: [Feature; 2]) -> Verdict {
         let tolerance = self.tolerance();
-        let mut crossed = None;
-        let mut steps_left = if self.is_far_sighted() { 0 } else { MAX_WALK };
+        feature::certify(self.cso, features, self.max_distance, tolerance, self.cost)
+    }
+
+    pub(crate) fn leave_contact(
+        &mut self,
+        normal: DVec3,
+        features: [Feature; 2],
+        verdict: &Verdict,
+    ) -> Option<(Answer, Stage)> {
+        let mut trail = Trail { normal, features, crossed: None, steps_left: self.steps(), stage: Stage::Feature, gjk: WARM };
+        match self.step(verdict, &mut trail) {
+            ControlFlow::Break(answer) => answer,
+            ControlFlow::Continue(()) => self.go_on(trail),
+        }
+    }
+
+    fn go_on(&mut self, mut trail: Trail) -> Option<(Answer, Stage)> {
         loop {
-            let verdict =
-                feature::certify(self.cso, features, self.max_distance, tolerance, self.cost);
+            let verdict = self.certify(trail.features);
+            if let ControlFlow::Break(answer) = self.step(&verdict, &mut trail) {
+                return answer;
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn step(&mut self, verdict: &Verdict, trail: &mut Trail) -> ControlFlow<Option<(Answer, Stage)>> {
             let (next, ends) = match verdict {
-                Verdict::Apart(apart) => return Some((Answer::Apart(apart), stage)),
-                Verdict::Certified(proximity) => return Some((Answer::Near(proximity), stage)),
-                Verdict::Unproved(candidate) => return self.find_depth(&candidate, stage, gjk),
+                Verdict::Apart(apart) => return ControlFlow::Break(Some((Answer::Apart(*apart), trail.stage))),
+                Verdict::Certified(proximity) => return ControlFlow::Break(Some((Answer::Near(*proximity), trail.stage))),
+                Verdict::Unproved(candidate) => return ControlFlow::Break(self.find_depth(candidate, trail.stage, trail.gjk)),
                 Verdict::Beyond(side) => {
                     let [from, to] = side.ends;
                     // A facet that has its face of shape 2 goes around the other way.
-                    let back = crossed == Some([to, from]) || crossed == Some([from, to]);
-                    crossed = Some(side.ends);
-                    let across = (!back).then(|| walk::across(self.cso, &side)).flatten();
+                    let back = trail.crossed == Some([to, from]) || trail.crossed == Some([from, to]);
+                    trail.crossed = Some(side.ends);
+                    let across = (!back).then(|| walk::across(self.cso, side)).flatten();
                     match across {
-                        Some(next) if next != features => (Some(next), side.ends),
-                        _ => self.leave(features, &side, normal),
+                        Some(next) if next != trail.features => (Some(next), side.ends),
+                        _ => self.leave(trail.features, side, trail.normal),
                     }
                 }
                 Verdict::Cut(vertex, normal) => {
-                    (walk::around(self.cso, &vertex, normal), [vertex.ids; 2])
+                    (walk::around(self.cso, vertex, *normal), [vertex.ids; 2])
                 }
                 Verdict::NoPlane => {
+                    let tolerance = self.tolerance();
                     let (max, cost) = (self.max_distance, &mut *self.cost);
-                    if let Some(answer) = corner::certify(self.cso, features, max, tolerance, cost)
+                    if let Some(answer) = corner::certify(self.cso, trail.features, max, tolerance, cost)
                     {
-                        return Some((answer, stage));
+                        return ControlFlow::Break(Some((answer, trail.stage)));
                     }
-                    self.start_anew(normal, feature::vertices(self.cso, features))
+                    self.start_anew(trail.normal, feature::vertices(self.cso, trail.features))
                 }
             };
             match next {
-                Some(next) if steps_left > 0 => features = next,
+                Some(next) if trail.steps_left > 0 => trail.features = next,
                 _ => {
                     let ends = both(ends, |ids| self.cso.vertex(ids));
                     let distinct = if ends[0].ids == ends[1].ids { 1 } else { 2 };
-                    return self.run_gjk(&ends[..distinct], gjk);
+                    return ControlFlow::Break(self.run_gjk(&ends[..distinct], trail.gjk));
                 }
             }
-            steps_left -= 1;
-            stage = Stage::Walk;
-        }
+            trail.steps_left -= 1;
+            trail.stage = Stage::Walk;
+            ControlFlow::Continue(())
     }
 
     /// Where the way over a side leads back. Two edges may span no facet at these poses, and any plane

@@ -18,7 +18,7 @@ mod verdict;
 
 pub(super) use polygon::ball_is_inside;
 pub(super) use seeds::Seeds;
-pub(super) use verdict::{Side, Verdict};
+pub(crate) use verdict::{Side, Verdict};
 
 use std::cmp::Ordering;
 

@@ -9,7 +9,7 @@ use crate::query::Proximity;
 use crate::support::{CsoVertex, VertexId};
 
 /// What a pair of features turned out to prove.
-pub(in crate::query) enum Verdict {
+pub(crate) enum Verdict {
     /// The facet's plane separates the shapes by more than was asked about.
     Apart(SeparatingAxis),
     /// The facet's signed distance is that of the shapes.
@@ -27,7 +27,7 @@ pub(in crate::query) enum Verdict {
 
 /// A side of a facet. In frame 1.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::query) struct Side {
+pub(crate) struct Side {
     /// The vertices at its ends.
     pub ends: [[VertexId; 2]; 2],
     /// The facet's normal, from shape 1 to shape 2.
