@@ -219,14 +219,19 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
     /// is more than `beyond`.
     #[inline(always)]
     pub fn test_balls(&self, beyond: f64) -> Option<(DVec3, f64)> {
-        let offset = -self.center();
+        self.has_balls_apart(beyond).then(|| {
+            let offset = -self.center();
+            let distance = offset.length();
+            (offset / distance, distance - self.size())
+        })
+    }
+
+    /// Whether the balls around the shapes are apart by more than `beyond`.
+    #[inline(always)]
+    pub fn has_balls_apart(&self, beyond: f64) -> bool {
         let reach = self.size() + beyond;
-        let squared = offset.length_squared();
-        if reach < 0.0 || squared.partial_cmp(&(reach * reach)) != Some(Ordering::Greater) {
-            return None;
-        }
-        let distance = squared.sqrt();
-        Some((offset / distance, distance - self.size()))
+        let squared = self.center().length_squared();
+        reach >= 0.0 && squared.partial_cmp(&(reach * reach)) == Some(Ordering::Greater)
     }
 
     /// The length that tolerances of the whole pair are relative to.

@@ -92,20 +92,12 @@ pub(super) fn read<M, C>(
     }
 }
 
-/// Leaves another axis where there is one, at the same vertices; and one at those of `start` in the
-/// place of a contact.
+/// Leaves nothing to a pair that is known to be apart without it: where to begin next is not worth
+/// a root and a division.
 #[inline(always)]
-pub(super) fn renew_axis<M, C>(
-    manifold: &mut ContactManifold<M, C>,
-    axis: DVec3,
-    frame: AxisFrame<'_>,
-    start: impl FnOnce() -> [VertexId; 2],
-) {
-    manifold.local_n1 = frame.keep(axis).as_vec3();
-    if !manifold.points.is_empty() {
-        manifold.points.clear();
-        manifold.local_n2 = as_vector(start());
-    }
+pub(super) fn forget<M, C>(manifold: &mut ContactManifold<M, C>) {
+    manifold.points.clear();
+    manifold.local_n1 = Vec3::ZERO;
 }
 
 /// Leaves a separating axis in a manifold without points.

@@ -44,7 +44,11 @@ impl PairVisitor for Cast<'_> {
 
     const CURVED: bool = true;
 
-    fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer> {
+    fn visit<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        scratch: &mut Scratch,
+    ) -> Option<Self::Answer> {
         self.cast(pair, |cso, velocity, seen| {
             self.overlap(cso, velocity, seen, scratch)
         })

@@ -54,9 +54,9 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         let frame = AxisFrame::of(&cso);
         let mut cost = Cost::default();
         // Two thirds of the pairs that are apart end here: before anything else is done for them.
-        if let Some((axis, _)) = cso.test_balls(max_distance) {
+        if cso.has_balls_apart(max_distance) {
             self.stats.record(Stage::Balls, &cost);
-            cache::renew_axis(self.manifold, axis, frame, || cso.start(axis));
+            cache::forget(self.manifold);
             return Some(());
         }
         let mut query = Query {
@@ -97,7 +97,11 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         Some(())
     }
 
-    fn visit_half_space(&mut self, pair: &Pair<'_, HalfSpace>, scratch: &mut Scratch) -> Option<()> {
+    fn visit_half_space(
+        &mut self,
+        pair: &Pair<'_, HalfSpace>,
+        scratch: &mut Scratch,
+    ) -> Option<()> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
         }

@@ -186,8 +186,8 @@ where
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
         let (shapes, sides) = ([g1, g2], (Side::alone(g1), Side::alone(g2)));
-        // Two hulls, the pairs that matter most, need not be asked whether they have parts.
-        if !(sides.0.is_hull() && sides.1.is_hull())
+        let may_have_parts = sides.0.may_have_parts() || sides.1.may_have_parts();
+        if may_have_parts
             && composite::contact_manifolds(self, pos12, shapes, prediction, manifolds, workspace)
         {
             return Ok(());

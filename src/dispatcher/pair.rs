@@ -109,7 +109,11 @@ pub(super) trait PairVisitor: Sized {
     const CURVED: bool = false;
 
     /// The other shape is a polytope.
-    fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer>;
+    fn visit<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        scratch: &mut Scratch,
+    ) -> Option<Self::Answer>;
 
     /// The other shape is a half-space.
     fn visit_half_space(
@@ -191,6 +195,17 @@ impl<'a, F: Find<'a>> Side<'a, F> {
         self.hull.is_some()
     }
 
+    /// Whether it may consist of parts. Of most shapes it is known at once that they do not.
+    #[inline]
+    pub fn may_have_parts(&self) -> bool {
+        use ShapeType::{Compound, Custom, HeightField, Polyline, TriMesh, Voxels};
+        !self.is_hull()
+            && matches!(
+                self.shape.shape_type(),
+                Compound | Custom | HeightField | Polyline | TriMesh | Voxels
+            )
+    }
+
     /// The same once more.
     #[inline]
     pub fn again(&mut self) -> Side<'a, &mut F> {
@@ -237,39 +252,41 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
     mut visitor: V,
 ) -> Option<V::Answer> {
     match [side_1.is_hull(), side_2.is_hull()] {
-        [true, true] => WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
-            hulls.begin(span);
-            let first = side_1.prepare(hulls)?;
-            // Two colliders with one shape, which many worlds are full of, need one proof.
-            let second = if std::ptr::addr_eq(side_1.shape, side_2.shape) {
-                first
-            } else {
-                side_2.prepare(hulls)?
-            };
-            let pair = Pair {
-                hull: first.hull(hulls)?,
-                other: second.hull(hulls)?,
-                borders: [first.border, second.border],
-                swapped: false,
-            };
-            visitor.visit(&pair, scratch)
-        }),
-        [true, false] => Besides::new(side_1, span, false).visit(side_2.shape, visitor),
-        [false, true] => Besides::new(side_2, span, true).visit(side_1.shape, visitor),
+        [true, true] => {
+            WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
+                hulls.begin(span);
+                let first = side_1.prepare(hulls)?;
+                // Two colliders with one shape, which many worlds are full of, need one proof.
+                let second = if std::ptr::addr_eq(side_1.shape, side_2.shape) {
+                    first
+                } else {
+                    side_2.prepare(hulls)?
+                };
+                let pair = Pair {
+                    hull: first.hull(hulls)?,
+                    other: second.hull(hulls)?,
+                    borders: [first.border, second.border],
+                    swapped: false,
+                };
+                visitor.visit(&pair, scratch)
+            })
+        }
+        [true, false] => Besides::new(&mut side_1, span, false).visit(side_2.shape, &mut visitor),
+        [false, true] => Besides::new(&mut side_2, span, true).visit(side_1.shape, &mut visitor),
         [false, false] => None,
     }
 }
 
 /// A hull, and where in its pair it is. It is not looked up before the other shape is known.
-struct Besides<'a, F> {
-    side: Side<'a, F>,
+struct Besides<'s, 'a, F> {
+    side: &'s mut Side<'a, F>,
     span: Option<Span>,
     swapped: bool,
 }
 
-impl<'a, F: Find<'a>> Besides<'a, F> {
+impl<'s, 'a, F: Find<'a>> Besides<'s, 'a, F> {
     #[inline]
-    fn new(side: Side<'a, F>, span: Option<Span>, swapped: bool) -> Self {
+    fn new(side: &'s mut Side<'a, F>, span: Option<Span>, swapped: bool) -> Self {
         Self {
             side,
             span,
@@ -279,53 +296,48 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
 
     /// Visits the hull and another shape; `None` if that is not known, or too flat or too small.
     #[inline(never)]
-    fn visit<V: PairVisitor>(self, other: &dyn Shape, mut visitor: V) -> Option<V::Answer> {
-        match other.shape_type() {
-            ShapeType::Cuboid => {
-                let cuboid = others::cuboid(other.as_cuboid()?)?;
-                self.polytope(&cuboid, 0.0, visitor)
+    fn visit<V: PairVisitor>(&mut self, other: &dyn Shape, visitor: &mut V) -> Option<V::Answer> {
+        match other.as_typed_shape() {
+            TypedShape::Cuboid(cuboid) => {
+                let cuboid = others::cuboid(cuboid);
+                self.polytope(cuboid.as_ref()?, 0.0, visitor)
             }
-            ShapeType::RoundCuboid => {
-                let round = other.as_round_cuboid()?;
+            TypedShape::RoundCuboid(round) => {
                 let cuboid = others::cuboid(&round.inner_shape)?;
                 self.polytope(&cuboid, round.border_radius, visitor)
             }
-            ShapeType::Triangle => {
-                let triangle = others::triangle(other.as_triangle()?)?;
-                self.polytope(&triangle, 0.0, visitor)
+            TypedShape::Triangle(triangle) => {
+                let triangle = others::triangle(triangle);
+                self.polytope(triangle.as_ref()?, 0.0, visitor)
             }
-            ShapeType::RoundTriangle => {
-                let round = other.as_round_triangle()?;
+            TypedShape::RoundTriangle(round) => {
                 let triangle = others::triangle(&round.inner_shape)?;
                 self.polytope(&triangle, round.border_radius, visitor)
             }
-            ShapeType::Ball => {
-                let radius = other.as_ball()?.radius;
+            TypedShape::Ball(ball) => {
+                let radius = ball.radius;
                 self.polytope(&Ball::new(others::positive(radius)?), radius, visitor)
             }
-            ShapeType::Capsule => {
-                let capsule = other.as_capsule()?;
+            TypedShape::Capsule(capsule) => {
                 let core = others::segment(&capsule.segment, capsule.radius)?;
                 self.polytope(&core, capsule.radius, visitor)
             }
-            ShapeType::Segment => {
-                let segment = others::segment(other.as_segment()?, 0.0)?;
+            TypedShape::Segment(segment) => {
+                let segment = others::segment(segment, 0.0)?;
                 self.polytope(&segment, 0.0, visitor)
             }
-            ShapeType::HalfSpace if V::HALF_SPACES => {
-                let half_space = others::half_space(other.as_halfspace()?)?;
+            TypedShape::HalfSpace(half_space) if V::HALF_SPACES => {
+                let half_space = others::half_space(half_space)?;
                 self.with(&half_space, 0.0, |pair, scratch| {
                     visitor.visit_half_space(pair, scratch)
                 })
             }
-            ShapeType::Cylinder if V::CURVED => self.curved(other.as_cylinder()?, 0.0, visitor),
-            ShapeType::RoundCylinder if V::CURVED => {
-                let round = other.as_round_cylinder()?;
+            TypedShape::Cylinder(cylinder) if V::CURVED => self.curved(cylinder, 0.0, visitor),
+            TypedShape::RoundCylinder(round) if V::CURVED => {
                 self.curved(&round.inner_shape, round.border_radius, visitor)
             }
-            ShapeType::Cone if V::CURVED => self.curved(other.as_cone()?, 0.0, visitor),
-            ShapeType::RoundCone if V::CURVED => {
-                let round = other.as_round_cone()?;
+            TypedShape::Cone(cone) if V::CURVED => self.curved(cone, 0.0, visitor),
+            TypedShape::RoundCone(round) if V::CURVED => {
                 self.curved(&round.inner_shape, round.border_radius, visitor)
             }
             _ => None,
@@ -334,20 +346,20 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
 
     #[inline]
     fn polytope<V: PairVisitor>(
-        self,
+        &mut self,
         other: &impl Polytope,
         border: Real,
-        mut visitor: V,
+        visitor: &mut V,
     ) -> Option<V::Answer> {
         self.with(other, border, |pair, scratch| visitor.visit(pair, scratch))
     }
 
     #[inline]
     fn curved<V: PairVisitor>(
-        self,
+        &mut self,
         other: &(impl Curved + PolygonalFeatureMap),
         border: Real,
-        mut visitor: V,
+        visitor: &mut V,
     ) -> Option<V::Answer> {
         self.with(&other.kernel()?, border, |pair, scratch| {
             visitor.visit_curved(pair, other, scratch)
@@ -357,7 +369,7 @@ impl<'a, F: Find<'a>> Besides<'a, F> {
     /// Hands over the hull together with the other shape.
     #[inline]
     fn with<B, T>(
-        mut self,
+        &mut self,
         other: &B,
         border: Real,
         visit: impl FnOnce(&Pair<'_, B>, &mut Scratch) -> Option<T>,

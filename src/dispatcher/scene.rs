@@ -161,7 +161,7 @@ impl SeparationQuery<'_> {
         let cso = pair.cso(&pose);
         let cost = &mut Cost::default();
         let max_distance = pair.between_cores(self.max_distance);
-        if cso.test_balls(max_distance).is_some() {
+        if cso.has_balls_apart(max_distance) {
             return Some(Separation::Beyond);
         }
         let axis = cso.towards_origin();
@@ -202,7 +202,11 @@ impl PairVisitor for SeparationQuery<'_> {
         self.separation(pair, GJK_CURVED_GAP)
     }
 
-    fn visit_half_space(&mut self, pair: &Pair<'_, HalfSpace>, _: &mut Scratch) -> Option<Self::Answer> {
+    fn visit_half_space(
+        &mut self,
+        pair: &Pair<'_, HalfSpace>,
+        _: &mut Scratch,
+    ) -> Option<Self::Answer> {
         let near = over_half_space(pair, self.pos12)?;
         let is_near = near.signed_distance <= f64::from(self.max_distance);
         Some(if is_near {
@@ -235,7 +239,11 @@ impl PairVisitor for ContactQuery<'_> {
 
     const CURVED: bool = true;
 
-    fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Self::Answer> {
+    fn visit<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        scratch: &mut Scratch,
+    ) -> Option<Self::Answer> {
         let pose = valid_pose(pair, self.pos12)?;
         let (answer, _) = Query {
             cso: &pair.cso(&pose),
@@ -272,7 +280,11 @@ impl PairVisitor for ContactQuery<'_> {
         }
     }
 
-    fn visit_half_space(&mut self, pair: &Pair<'_, HalfSpace>, _: &mut Scratch) -> Option<Self::Answer> {
+    fn visit_half_space(
+        &mut self,
+        pair: &Pair<'_, HalfSpace>,
+        _: &mut Scratch,
+    ) -> Option<Self::Answer> {
         let near = over_half_space(pair, self.pos12)?;
         let within = near.signed_distance <= f64::from(self.prediction);
         Some(within.then(|| near.contact()))

@@ -31,8 +31,8 @@ use crate::simplex::Preferred;
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
 use crate::tolerance::DEPTH_GAP;
-use feature::{Seeds, Side};
 pub(crate) use feature::Verdict;
+use feature::{Seeds, Side};
 
 /// Tangent of the angle by which a direction is turned towards where the next facet is to be
 /// expected. Hulls of a hundred vertices have dihedral angles around it; any value is correct.
@@ -225,15 +225,34 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     }
 
     #[inline(always)]
-    pub(crate) fn test_axis(&mut self, axis: DVec3, ids: [VertexId; 2]) -> Result<SeparatingAxis, CsoVertex> {
-        gjk::test_axis(self.cso, axis, self.valid_start(ids), self.max_distance, self.cost)
+    pub(crate) fn test_axis(
+        &mut self,
+        axis: DVec3,
+        ids: [VertexId; 2],
+    ) -> Result<SeparatingAxis, CsoVertex> {
+        gjk::test_axis(
+            self.cso,
+            axis,
+            self.valid_start(ids),
+            self.max_distance,
+            self.cost,
+        )
     }
 
-    pub(crate) fn leave_axis(&mut self, axis: DVec3, vertex: &CsoVertex) -> Option<(Answer, Stage)> {
+    pub(crate) fn leave_axis(
+        &mut self,
+        axis: DVec3,
+        vertex: &CsoVertex,
+    ) -> Option<(Answer, Stage)> {
         self.turn_axis(axis, vertex, WARM)
     }
 
-    fn turn_axis(&mut self, axis: DVec3, vertex: &CsoVertex, gjk: [Stage; 2]) -> Option<(Answer, Stage)> {
+    fn turn_axis(
+        &mut self,
+        axis: DVec3,
+        vertex: &CsoVertex,
+        gjk: [Stage; 2],
+    ) -> Option<(Answer, Stage)> {
         let vertex = *vertex;
         if self.is_far_sighted() {
             return self.run_gjk(&[vertex], gjk);
@@ -274,10 +293,19 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         stage: Stage,
         gjk: [Stage; 2],
     ) -> Option<(Answer, Stage)> {
-        self.go_on(Trail { normal, features, crossed: None, steps_left: self.steps(), stage, gjk })
+        self.go_on(Trail {
+            normal,
+            features,
+            crossed: None,
+            steps_left: self.steps(),
+            stage,
+            gjk,
+        })
     }
 
-    fn steps(&self) -> usize { if self.is_far_sighted() { 0 } else { MAX_WALK } }
+    fn steps(&self) -> usize {
+        if self.is_far_sighted() { 0 } else { MAX_WALK }
+    }
 
     #[inline(always)]
     pub(crate) fn certify(&mut self, features: [Feature; 2]) -> Verdict {
@@ -291,7 +319,14 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         features: [Feature; 2],
         verdict: &Verdict,
     ) -> Option<(Answer, Stage)> {
-        let mut trail = Trail { normal, features, crossed: None, steps_left: self.steps(), stage: Stage::Feature, gjk: WARM };
+        let mut trail = Trail {
+            normal,
+            features,
+            crossed: None,
+            steps_left: self.steps(),
+            stage: Stage::Feature,
+            gjk: WARM,
+        };
         match self.step(verdict, &mut trail) {
             ControlFlow::Break(answer) => answer,
             ControlFlow::Continue(()) => self.go_on(trail),
@@ -308,46 +343,57 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     }
 
     #[inline(always)]
-    fn step(&mut self, verdict: &Verdict, trail: &mut Trail) -> ControlFlow<Option<(Answer, Stage)>> {
-            let (next, ends) = match verdict {
-                Verdict::Apart(apart) => return ControlFlow::Break(Some((Answer::Apart(*apart), trail.stage))),
-                Verdict::Certified(proximity) => return ControlFlow::Break(Some((Answer::Near(*proximity), trail.stage))),
-                Verdict::Unproved(candidate) => return ControlFlow::Break(self.find_depth(candidate, trail.stage, trail.gjk)),
-                Verdict::Beyond(side) => {
-                    let [from, to] = side.ends;
-                    // A facet that has its face of shape 2 goes around the other way.
-                    let back = trail.crossed == Some([to, from]) || trail.crossed == Some([from, to]);
-                    trail.crossed = Some(side.ends);
-                    let across = (!back).then(|| walk::across(self.cso, side)).flatten();
-                    match across {
-                        Some(next) if next != trail.features => (Some(next), side.ends),
-                        _ => self.leave(trail.features, side, trail.normal),
-                    }
-                }
-                Verdict::Cut(vertex, normal) => {
-                    (walk::around(self.cso, vertex, *normal), [vertex.ids; 2])
-                }
-                Verdict::NoPlane => {
-                    let tolerance = self.tolerance();
-                    let (max, cost) = (self.max_distance, &mut *self.cost);
-                    if let Some(answer) = corner::certify(self.cso, trail.features, max, tolerance, cost)
-                    {
-                        return ControlFlow::Break(Some((answer, trail.stage)));
-                    }
-                    self.start_anew(trail.normal, feature::vertices(self.cso, trail.features))
-                }
-            };
-            match next {
-                Some(next) if trail.steps_left > 0 => trail.features = next,
-                _ => {
-                    let ends = both(ends, |ids| self.cso.vertex(ids));
-                    let distinct = if ends[0].ids == ends[1].ids { 1 } else { 2 };
-                    return ControlFlow::Break(self.run_gjk(&ends[..distinct], trail.gjk));
+    fn step(
+        &mut self,
+        verdict: &Verdict,
+        trail: &mut Trail,
+    ) -> ControlFlow<Option<(Answer, Stage)>> {
+        let (next, ends) = match verdict {
+            Verdict::Apart(apart) => {
+                return ControlFlow::Break(Some((Answer::Apart(*apart), trail.stage)));
+            }
+            Verdict::Certified(proximity) => {
+                return ControlFlow::Break(Some((Answer::Near(*proximity), trail.stage)));
+            }
+            Verdict::Unproved(candidate) => {
+                return ControlFlow::Break(self.find_depth(candidate, trail.stage, trail.gjk));
+            }
+            Verdict::Beyond(side) => {
+                let [from, to] = side.ends;
+                // A facet that has its face of shape 2 goes around the other way.
+                let back = trail.crossed == Some([to, from]) || trail.crossed == Some([from, to]);
+                trail.crossed = Some(side.ends);
+                let across = (!back).then(|| walk::across(self.cso, side)).flatten();
+                match across {
+                    Some(next) if next != trail.features => (Some(next), side.ends),
+                    _ => self.leave(trail.features, side, trail.normal),
                 }
             }
-            trail.steps_left -= 1;
-            trail.stage = Stage::Walk;
-            ControlFlow::Continue(())
+            Verdict::Cut(vertex, normal) => {
+                (walk::around(self.cso, vertex, *normal), [vertex.ids; 2])
+            }
+            Verdict::NoPlane => {
+                let tolerance = self.tolerance();
+                let (max, cost) = (self.max_distance, &mut *self.cost);
+                if let Some(answer) =
+                    corner::certify(self.cso, trail.features, max, tolerance, cost)
+                {
+                    return ControlFlow::Break(Some((answer, trail.stage)));
+                }
+                self.start_anew(trail.normal, feature::vertices(self.cso, trail.features))
+            }
+        };
+        match next {
+            Some(next) if trail.steps_left > 0 => trail.features = next,
+            _ => {
+                let ends = both(ends, |ids| self.cso.vertex(ids));
+                let distinct = if ends[0].ids == ends[1].ids { 1 } else { 2 };
+                return ControlFlow::Break(self.run_gjk(&ends[..distinct], trail.gjk));
+            }
+        }
+        trail.steps_left -= 1;
+        trail.stage = Stage::Walk;
+        ControlFlow::Continue(())
     }
 
     /// Where the way over a side leads back. Two edges may span no facet at these poses, and any plane
