@@ -106,6 +106,7 @@ mod both;
 pub mod dispatcher;
 pub mod epa;
 pub mod gjk;
+mod greatest;
 pub mod hull;
 pub mod hull_shape;
 pub mod manifold;

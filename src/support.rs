@@ -53,8 +53,8 @@ pub trait Polytope: Support {
     /// The position of a vertex.
     fn vertex(&self, vertex: VertexId) -> DVec3;
 
-    /// The vertices that share an edge with a vertex, some perhaps more than once.
-    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId>;
+    /// The vertices that share an edge with a vertex, in fours, some perhaps more than once.
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = [VertexId; 4]>;
 
     /// Whether there is such a face.
     fn has_face(&self, face: FaceId) -> bool;

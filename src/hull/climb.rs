@@ -111,8 +111,8 @@ impl Slope<'_> {
             highest = self.look_further(after, highest);
         }
         let top = highest.top();
-        let best = self.graph.neighbor(at, top.place);
-        (best.unwrap_or(at), top.height)
+        let best = self.graph.neighbor(at, top.name as usize);
+        (best.unwrap_or(at), top.value)
     }
 
     /// At the neighbours in a star, of which the first has this `place`.

@@ -177,6 +177,15 @@ impl EdgeGraph {
         self.stars(vertex).flat_map(Star::to)
     }
 
+    /// The same in fours.
+    #[inline]
+    pub fn neighbors_in_fours(&self, vertex: VertexId) -> impl Iterator<Item = [VertexId; 4]> {
+        self.stars(vertex).flat_map(|star| {
+            let [a, b, c, d, e, f, g, h] = star.to();
+            [[a, b, c, d], [e, f, g, h]].map(|four| four.map(VertexId::from))
+        })
+    }
+
     /// The faces around a vertex, some of them more than once.
     #[inline]
     pub fn faces_at(&self, vertex: VertexId) -> impl Iterator<Item = [u16; STAR]> + Clone {

@@ -155,8 +155,8 @@ impl Polytope for Hull {
 
     /// The neighbours on the triangulated surface; the first may be repeated.
     #[inline]
-    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
-        self.graph.neighbors(vertex).map(|v| v.into())
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = [VertexId; 4]> {
+        self.graph.neighbors_in_fours(vertex)
     }
 
     #[inline]

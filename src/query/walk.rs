@@ -7,9 +7,11 @@
 //! vertex's region of the other.)
 
 use glam::DVec3;
+use wide::{f64x4, u64x4};
 
 use super::feature::{Feature, Side};
 use crate::both::both;
+use crate::greatest::{Greatest, Top};
 use crate::pose::RelativePose;
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 
@@ -51,57 +53,66 @@ pub(super) fn around<A: Polytope, B: Polytope>(
 ) -> Option<[Feature; 2]> {
     let [id_1, id_2] = vertex.ids;
     let sideways = (normal * normal.dot(vertex.w) - vertex.w).try_normalize()?;
-    let mut first = Turn::default();
-    let corner_1 = cso.shape_1.vertex(id_1);
-    for neighbor in cso.shape_1.neighbors(id_1) {
-        let along = cso.shape_1.vertex(neighbor) - corner_1;
-        first.meet([normal, sideways], along, [neighbor, id_2]);
-    }
-    let corner_2 = cso.shape_2.vertex(id_2);
-    let seen = both([normal, sideways], |dir| cso.pose.direction_to_2(dir));
-    for neighbor in cso.shape_2.neighbors(id_2) {
-        let along = corner_2 - cso.shape_2.vertex(neighbor);
-        first.meet(seen, along, [id_1, neighbor]);
-    }
-    if first.tangent == f64::INFINITY {
+    let seen = both([normal, sideways], |dir| -cso.pose.direction_to_2(dir));
+    let first_1 = first_turn(cso.shape_1, id_1, [normal, sideways]);
+    let first_2 = first_turn(cso.shape_2, id_2, seen);
+    let (to, top) = if first_2.value > first_1.value {
+        ([id_1, first_2.name as VertexId], first_2)
+    } else {
+        ([first_1.name as VertexId, id_2], first_1)
+    };
+    if top.value == f64::NEG_INFINITY {
         return None;
     }
-    let normal = (normal + sideways * first.tangent).normalize();
-    let beside = (cso.vertex(first.to).w - vertex.w).cross(normal);
+    let normal = (normal - sideways * top.value).normalize();
+    let beside = (cso.vertex(to).w - vertex.w).cross(normal);
     let side = Side {
-        ends: [vertex.ids, first.to],
+        ends: [vertex.ids, to],
         normal,
         outward: beside * beside.dot(sideways).signum(),
     };
     across(cso, &side)
 }
 
-/// The least turn of a normal that meets an edge.
-struct Turn {
-    tangent: f64,
-    /// The vertices at the edge's other end, if one is met.
-    to: [VertexId; 2],
-}
-
-impl Default for Turn {
-    fn default() -> Self {
-        Self {
-            tangent: f64::INFINITY,
-            to: [0; 2],
-        }
+/// Of the edges at a vertex of `p` that which comes level first when the normal is turned to the side:
+/// minus the tangent of the angle, and the vertex at its other end. Minus infinity if none does.
+#[inline(always)]
+fn first_turn<P: Polytope>(p: &P, vertex: VertexId, [normal, sideways]: [DVec3; 2]) -> Top {
+    let mut first = Greatest::above(f64::NEG_INFINITY);
+    for (ends, edges) in edges(p, vertex) {
+        let (below, rise) = (edges.dot(normal).fast_min(f64x4::ZERO), edges.dot(sideways));
+        let rises = rise.simd_gt(f64x4::ZERO);
+        let turn = rises.bitselect(below / rise, f64x4::splat(f64::NEG_INFINITY));
+        first.look_at(turn, ends);
     }
+    first.top()
 }
 
-impl Turn {
-    /// The edge `along` comes level when the normal has been turned by some angle to the side.
-    #[inline]
-    fn meet(&mut self, [normal, sideways]: [DVec3; 2], along: DVec3, to: [VertexId; 2]) {
-        let (below, rise) = (normal.dot(along).min(0.0), sideways.dot(along));
-        // Selections: which edge is the first so far is not predictable.
-        let tangent = -below / rise;
-        let is_less = (rise > 0.0) & (tangent < self.tangent);
-        self.tangent = if is_less { tangent } else { self.tangent };
-        self.to = if is_less { to } else { self.to };
+/// The edges at a vertex, and the vertices at their other ends, in fours.
+#[inline(always)]
+fn edges<P: Polytope>(p: &P, vertex: VertexId) -> impl Iterator<Item = (u64x4, Edges)> {
+    let corner = p.vertex(vertex);
+    p.neighbors(vertex).map(move |ends| {
+        let [a, b, c, d] = ends;
+        let [p0, p1, p2, p3] = [p.vertex(a), p.vertex(b), p.vertex(c), p.vertex(d)];
+        let edges = Edges([
+            f64x4::new([p0.x, p1.x, p2.x, p3.x]) - corner.x,
+            f64x4::new([p0.y, p1.y, p2.y, p3.y]) - corner.y,
+            f64x4::new([p0.z, p1.z, p2.z, p3.z]) - corner.z,
+        ]);
+        let ends = u64x4::new([a.into(), b.into(), c.into(), d.into()]);
+        (ends, edges)
+    })
+}
+
+/// Four vectors, coordinate by coordinate.
+struct Edges([f64x4; 3]);
+
+impl Edges {
+    #[inline(always)]
+    fn dot(&self, dir: DVec3) -> f64x4 {
+        let [x, y, z] = self.0;
+        x * dir.x + y * dir.y + z * dir.z
     }
 }
 
@@ -129,23 +140,20 @@ impl Ridge {
             return None; // no plane to turn to
         }
         let [first, last] = both([normal, beyond], |n| -q_pose.direction_to_2(n));
-        let corner = q.vertex(self.vertex);
-        // The way from the one normal to the other goes from 0 to 1.
-        let mut nearest = 1.0;
-        let mut level = self.vertex;
-        for neighbor in q.neighbors(self.vertex) {
-            let along = q.vertex(neighbor) - corner;
-            let (below, above) = (first.dot(along).min(0.0), last.dot(along));
-            // The edge rises on the way, and before the nearest one so far.
-            let way = -below / (above - below);
-            let is_nearer = (above > 0.0) & (way < nearest);
-            nearest = if is_nearer { way } else { nearest };
-            level = if is_nearer { neighbor } else { level };
+        // The way from the one normal to the other goes from 0 to 1. Minus that to where the first edge
+        // comes level:
+        let mut nearest = Greatest::above(-1.0);
+        for (ends, edges) in edges(q, self.vertex) {
+            let (below, above) = (edges.dot(first).fast_min(f64x4::ZERO), edges.dot(last));
+            let rises = above.simd_gt(f64x4::ZERO);
+            let way = rises.bitselect(below / (above - below), f64x4::splat(-1.0));
+            nearest.look_at(way, ends);
         }
-        Some(if level == self.vertex {
+        let nearest = nearest.top();
+        Some(if nearest.value == -1.0 {
             [Feature::Face(face), Feature::Vertex(self.vertex)]
         } else {
-            let level = q.edge_id(self.vertex, level)?;
+            let level = q.edge_id(self.vertex, nearest.name as VertexId)?;
             [Feature::Edge(edge), Feature::Edge(level)]
         })
     }
