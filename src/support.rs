@@ -1,6 +1,7 @@
 //! What the kernels see of a shape: extreme points with vertex ids, and of a polytope its faces.
 
 use std::cmp::Ordering;
+use std::iter;
 
 use glam::{DVec3, Vec3};
 
@@ -53,8 +54,19 @@ pub trait Polytope: Support {
     /// The position of a vertex.
     fn vertex(&self, vertex: VertexId) -> DVec3;
 
-    /// The vertices that share an edge with a vertex, in fours, some perhaps more than once.
-    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = [VertexId; 4]>;
+    /// The vertices that share an edge with a vertex, some perhaps more than once.
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId>;
+
+    /// The same in fours.
+    #[inline]
+    fn neighbors_in_fours(&self, vertex: VertexId) -> impl Iterator<Item = [VertexId; 4]> {
+        let mut neighbors = self.neighbors(vertex);
+        iter::from_fn(move || {
+            let first = neighbors.next()?;
+            let mut next = || neighbors.next().unwrap_or(first);
+            Some([first, next(), next(), next()])
+        })
+    }
 
     /// Whether there is such a face.
     fn has_face(&self, face: FaceId) -> bool;

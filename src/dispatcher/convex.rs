@@ -16,7 +16,7 @@ use crate::both::both;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch};
 use crate::pose::RelativePose;
-use crate::query::{Answer, Memory, Proximity, Query, Verdict};
+use crate::query::{self, Answer, Memory, Proximity, Query, Verdict};
 use crate::stats::{Cost, SharedStats, Stage};
 use crate::support::{Cso, Polytope, Support};
 
@@ -66,14 +66,17 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             scratch: &mut scratch.epa,
             cost: &mut cost,
         };
+        // Stage by stage: what most queries find is used where it is found. An answer that is moved is
+        // waited for until it is written.
         let answer = match cache::read(self.manifold, pair.swapped, frame) {
+            Memory::None => query.begin(),
             Memory::Axis(axis, ids) => match query.test_axis(axis, ids) {
                 Ok(apart) => {
                     self.stats.record(Stage::Axis, &cost);
                     cache::write_axis(self.manifold, &apart, frame);
                     return Some(());
                 }
-                Err(vertex) => query.leave_axis(axis, &vertex),
+                Err(vertex) => query.turn_axis(axis, vertex, query::WARM),
             },
             Memory::Contact(normal, features) => {
                 let verdict = query.certify(features);
@@ -82,9 +85,8 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                     self.write_contacts(pair, &cso, near, max_distance, &mut scratch.clip);
                     return Some(());
                 }
-                query.leave_contact(normal, features, &verdict)
+                query.follow_contact(normal, features, &verdict)
             }
-            Memory::None => query.run_near(&Memory::None),
         };
         let (answer, stage) = answer.as_ref()?;
         self.stats.record(*stage, &cost);

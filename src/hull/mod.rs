@@ -155,7 +155,12 @@ impl Polytope for Hull {
 
     /// The neighbours on the triangulated surface; the first may be repeated.
     #[inline]
-    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = [VertexId; 4]> {
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
+        self.graph.neighbors(vertex).map(|v| v.into())
+    }
+
+    #[inline]
+    fn neighbors_in_fours(&self, vertex: VertexId) -> impl Iterator<Item = [VertexId; 4]> {
         self.graph.neighbors_in_fours(vertex)
     }
 

@@ -46,7 +46,7 @@ impl Polytope for Ball {
     }
 
     #[inline]
-    fn neighbors(&self, _: VertexId) -> impl Iterator<Item = [VertexId; 4]> {
+    fn neighbors(&self, _: VertexId) -> impl Iterator<Item = VertexId> {
         std::iter::empty()
     }
 

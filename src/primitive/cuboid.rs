@@ -78,8 +78,8 @@ impl Polytope for CuboidPolytope {
     }
 
     #[inline]
-    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = [VertexId; 4]> {
-        std::iter::once([1, 2, 4, 4].map(|axis| vertex ^ axis))
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
+        (0..3).map(move |k| vertex ^ 1 << k)
     }
 
     #[inline]

@@ -65,8 +65,8 @@ impl Polytope for Segment {
     }
 
     #[inline]
-    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = [VertexId; 4]> {
-        std::iter::once([vertex ^ 1; 4])
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
+        std::iter::once(vertex ^ 1)
     }
 
     #[inline]

@@ -69,8 +69,8 @@ impl Polytope for TrianglePolytope {
     }
 
     #[inline]
-    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = [VertexId; 4]> {
-        std::iter::once([1, 2, 2, 2].map(|k| (vertex + k) % 3))
+    fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
+        (1..3).map(move |k| (vertex + k) % 3)
     }
 
     #[inline]

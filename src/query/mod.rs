@@ -16,39 +16,32 @@
 mod corner;
 mod fan;
 mod feature;
+mod trail;
 mod walk;
 
+pub(crate) use feature::Verdict;
 pub use feature::{Feature, vertices};
-
-use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use crate::both::both;
 use crate::epa::{self, Depth, EpaScratch, Penetration, Shells};
 use crate::gjk::{self, Closest, Outcome, SeparatingAxis};
 use crate::simplex::Preferred;
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
 use crate::tolerance::DEPTH_GAP;
-pub(crate) use feature::Verdict;
-use feature::{Seeds, Side};
+use feature::Seeds;
 
 /// Tangent of the angle by which a direction is turned towards where the next facet is to be
 /// expected. Hulls of a hundred vertices have dihedral angles around it; any value is correct.
 const TILT: f64 = 0.2;
-
-/// A contact rolls over to the next facet or the one after, on hulls of a thousand vertices over some
-/// more; one that is not found by then is not near, or the nearest point is no facet's, and GJK finds it
-/// in fewer steps.
-const MAX_WALK: usize = 10;
 
 /// Shapes that are farther apart than this share of their size are mostly nearest at vertices and
 /// edges. A query that wants to know so far leaves these to GJK, without a walk over facets.
 const FAR: f64 = 0.1;
 
 /// What GJK and EPA count as in a query that goes on from a previous frame, and without one.
-const WARM: [Stage; 2] = [Stage::WarmGjk, Stage::WarmEpa];
+pub(crate) const WARM: [Stage; 2] = [Stage::WarmGjk, Stage::WarmEpa];
 const COLD: [Stage; 2] = [Stage::ColdGjk, Stage::ColdEpa];
 
 /// What is remembered of a pair from one frame to the next.
@@ -163,18 +156,6 @@ fn tilted(axis: DVec3, too_near: &CsoVertex) -> DVec3 {
     (axis - sideways.normalize_or_zero() * TILT).normalize()
 }
 
-struct Trail {
-    normal: DVec3,
-    features: [Feature; 2],
-    crossed: Option<[[VertexId; 2]; 2]>,
-    steps_left: usize,
-    stage: Stage,
-    gjk: [Stage; 2],
-}
-
-/// The facet to look at next, if there is one, and the ends of where it was looked for.
-type Way = (Option<[Feature; 2]>, [[VertexId; 2]; 2]);
-
 impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     /// Answers from `memory` where that is possible, cold otherwise. `None` only if the shapes
     /// have no volume between them or are not finite.
@@ -186,17 +167,65 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     }
 
     /// As [`run`](Self::run), of a pair whose balls are known not to be too far apart.
-    #[inline(always)]
-    pub(crate) fn run_near(&mut self, memory: &Memory) -> Option<(Answer, Stage)> {
+    fn run_near(&mut self, memory: &Memory) -> Option<(Answer, Stage)> {
         match *memory {
-            Memory::None => {
-                let axis = self.cso.towards_origin();
-                self.follow_axis(axis, self.cso.start(axis), COLD)
-            }
+            Memory::None => self.begin(),
             Memory::Axis(axis, ids) => self.follow_axis(axis, self.valid_start(ids), WARM),
             Memory::Contact(normal, features) => {
-                self.follow(normal, features, Stage::Feature, WARM)
+                let verdict = self.certify(features);
+                self.follow_contact(normal, features, &verdict)
             }
+        }
+    }
+
+    /// Without memory: along the line of centres.
+    pub(crate) fn begin(&mut self) -> Option<(Answer, Stage)> {
+        let axis = self.cso.towards_origin();
+        self.follow_axis(axis, self.cso.start(axis), COLD)
+    }
+
+    fn follow_axis(
+        &mut self,
+        axis: DVec3,
+        start: [VertexId; 2],
+        gjk: [Stage; 2],
+    ) -> Option<(Answer, Stage)> {
+        match gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost) {
+            Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
+            Err(vertex) => self.turn_axis(axis, vertex, gjk),
+        }
+    }
+
+    /// Whether an axis that is remembered with these vertices separates; if not, the vertex that is too
+    /// near along it.
+    #[inline(always)]
+    pub(crate) fn test_axis(
+        &mut self,
+        axis: DVec3,
+        ids: [VertexId; 2],
+    ) -> Result<SeparatingAxis, CsoVertex> {
+        let start = self.valid_start(ids);
+        gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost)
+    }
+
+    /// Goes on where an axis does not separate. Often one does that is tilted away from where the shapes
+    /// come too near; else the facets around are the next to look at.
+    pub(crate) fn turn_axis(
+        &mut self,
+        axis: DVec3,
+        vertex: CsoVertex,
+        gjk: [Stage; 2],
+    ) -> Option<(Answer, Stage)> {
+        if self.is_far_sighted() {
+            return self.run_gjk(&[vertex], gjk);
+        }
+        let tilted = tilted(axis, &vertex);
+        match gjk::test_axis(self.cso, tilted, vertex.ids, self.max_distance, self.cost) {
+            Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
+            Err(second) => match walk::around(self.cso, &second, tilted) {
+                Some(features) => self.follow(tilted, features, gjk),
+                None => self.run_gjk(&[vertex, second], gjk),
+            },
         }
     }
 
@@ -207,64 +236,6 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
 
     fn is_far_sighted(&self) -> bool {
         self.max_distance > FAR * self.cso.size()
-    }
-
-    /// Tests an axis. If it does not separate, then often one that is tilted away from where the
-    /// shapes come too near; else the facets around are the next to look at.
-    fn follow_axis(
-        &mut self,
-        axis: DVec3,
-        start: [VertexId; 2],
-        gjk: [Stage; 2],
-    ) -> Option<(Answer, Stage)> {
-        let vertex = match gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost) {
-            Ok(apart) => return Some((Answer::Apart(apart), Stage::Axis)),
-            Err(vertex) => vertex,
-        };
-        self.turn_axis(axis, &vertex, gjk)
-    }
-
-    #[inline(always)]
-    pub(crate) fn test_axis(
-        &mut self,
-        axis: DVec3,
-        ids: [VertexId; 2],
-    ) -> Result<SeparatingAxis, CsoVertex> {
-        gjk::test_axis(
-            self.cso,
-            axis,
-            self.valid_start(ids),
-            self.max_distance,
-            self.cost,
-        )
-    }
-
-    pub(crate) fn leave_axis(
-        &mut self,
-        axis: DVec3,
-        vertex: &CsoVertex,
-    ) -> Option<(Answer, Stage)> {
-        self.turn_axis(axis, vertex, WARM)
-    }
-
-    fn turn_axis(
-        &mut self,
-        axis: DVec3,
-        vertex: &CsoVertex,
-        gjk: [Stage; 2],
-    ) -> Option<(Answer, Stage)> {
-        let vertex = *vertex;
-        if self.is_far_sighted() {
-            return self.run_gjk(&[vertex], gjk);
-        }
-        let tilted = tilted(axis, &vertex);
-        match gjk::test_axis(self.cso, tilted, vertex.ids, self.max_distance, self.cost) {
-            Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-            Err(second) => match walk::around(self.cso, &second, tilted) {
-                Some(features) => self.follow(tilted, features, Stage::Walk, gjk),
-                None => self.run_gjk(&[vertex, second], gjk),
-            },
-        }
     }
 
     /// GJK from vertices of the Minkowski difference, and EPA if the shapes overlap.
@@ -281,139 +252,6 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                 Some((self.overlapping(&depth), stages[1]))
             }
         }
-    }
-
-    /// Re-evaluates features, and walks on from facet to facet to where the origin projects into
-    /// one. Where features span no plane, `normal` tells where to look. `stage` is that of an answer
-    /// by the first facet, `gjk` are those of answers by GJK and EPA.
-    fn follow(
-        &mut self,
-        normal: DVec3,
-        features: [Feature; 2],
-        stage: Stage,
-        gjk: [Stage; 2],
-    ) -> Option<(Answer, Stage)> {
-        self.go_on(Trail {
-            normal,
-            features,
-            crossed: None,
-            steps_left: self.steps(),
-            stage,
-            gjk,
-        })
-    }
-
-    fn steps(&self) -> usize {
-        if self.is_far_sighted() { 0 } else { MAX_WALK }
-    }
-
-    #[inline(always)]
-    pub(crate) fn certify(&mut self, features: [Feature; 2]) -> Verdict {
-        let tolerance = self.tolerance();
-        feature::certify(self.cso, features, self.max_distance, tolerance, self.cost)
-    }
-
-    pub(crate) fn leave_contact(
-        &mut self,
-        normal: DVec3,
-        features: [Feature; 2],
-        verdict: &Verdict,
-    ) -> Option<(Answer, Stage)> {
-        let mut trail = Trail {
-            normal,
-            features,
-            crossed: None,
-            steps_left: self.steps(),
-            stage: Stage::Feature,
-            gjk: WARM,
-        };
-        match self.step(verdict, &mut trail) {
-            ControlFlow::Break(answer) => answer,
-            ControlFlow::Continue(()) => self.go_on(trail),
-        }
-    }
-
-    fn go_on(&mut self, mut trail: Trail) -> Option<(Answer, Stage)> {
-        loop {
-            let verdict = self.certify(trail.features);
-            if let ControlFlow::Break(answer) = self.step(&verdict, &mut trail) {
-                return answer;
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn step(
-        &mut self,
-        verdict: &Verdict,
-        trail: &mut Trail,
-    ) -> ControlFlow<Option<(Answer, Stage)>> {
-        let (next, ends) = match verdict {
-            Verdict::Apart(apart) => {
-                return ControlFlow::Break(Some((Answer::Apart(*apart), trail.stage)));
-            }
-            Verdict::Certified(proximity) => {
-                return ControlFlow::Break(Some((Answer::Near(*proximity), trail.stage)));
-            }
-            Verdict::Unproved(candidate) => {
-                return ControlFlow::Break(self.find_depth(candidate, trail.stage, trail.gjk));
-            }
-            Verdict::Beyond(side) => {
-                let [from, to] = side.ends;
-                // A facet that has its face of shape 2 goes around the other way.
-                let back = trail.crossed == Some([to, from]) || trail.crossed == Some([from, to]);
-                trail.crossed = Some(side.ends);
-                let across = (!back).then(|| walk::across(self.cso, side)).flatten();
-                match across {
-                    Some(next) if next != trail.features => (Some(next), side.ends),
-                    _ => self.leave(trail.features, side, trail.normal),
-                }
-            }
-            Verdict::Cut(vertex, normal) => {
-                (walk::around(self.cso, vertex, *normal), [vertex.ids; 2])
-            }
-            Verdict::NoPlane => {
-                let tolerance = self.tolerance();
-                let (max, cost) = (self.max_distance, &mut *self.cost);
-                if let Some(answer) =
-                    corner::certify(self.cso, trail.features, max, tolerance, cost)
-                {
-                    return ControlFlow::Break(Some((answer, trail.stage)));
-                }
-                self.start_anew(trail.normal, feature::vertices(self.cso, trail.features))
-            }
-        };
-        match next {
-            Some(next) if trail.steps_left > 0 => trail.features = next,
-            _ => {
-                let ends = both(ends, |ids| self.cso.vertex(ids));
-                let distinct = if ends[0].ids == ends[1].ids { 1 } else { 2 };
-                return ControlFlow::Break(self.run_gjk(&ends[..distinct], trail.gjk));
-            }
-        }
-        trail.steps_left -= 1;
-        trail.stage = Stage::Walk;
-        ControlFlow::Continue(())
-    }
-
-    /// Where the way over a side leads back. Two edges may span no facet at these poses, and any plane
-    /// then: they are left by the vertex that is extreme along `normal`. Else the nearest point lies on the
-    /// side.
-    fn leave(&mut self, features: [Feature; 2], side: &Side, normal: DVec3) -> Way {
-        if let [Feature::Edge(_), Feature::Edge(_)] = features {
-            let [from, _] = side.ends;
-            let vertex = self.cso.support(side.normal, from, self.cost);
-            if side.normal.dot(vertex.w - self.cso.vertex(from).w) > self.tolerance() {
-                return self.start_anew(normal, vertex.ids);
-            }
-        }
-        (None, side.ends)
-    }
-
-    /// To a facet at the vertex that is extreme along `normal`.
-    fn start_anew(&mut self, normal: DVec3, start: [VertexId; 2]) -> Way {
-        let vertex = self.cso.support(normal, start, self.cost);
-        (walk::around(self.cso, &vertex, normal), [vertex.ids; 2])
     }
 
     /// The depth, which may be proved to be the candidate's by a polytope of a previous frame, or by the

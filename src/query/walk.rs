@@ -92,7 +92,7 @@ fn first_turn<P: Polytope>(p: &P, vertex: VertexId, [normal, sideways]: [DVec3; 
 #[inline(always)]
 fn edges<P: Polytope>(p: &P, vertex: VertexId) -> impl Iterator<Item = (u64x4, Edges)> {
     let corner = p.vertex(vertex);
-    p.neighbors(vertex).map(move |ends| {
+    p.neighbors_in_fours(vertex).map(move |ends| {
         let [a, b, c, d] = ends;
         let [p0, p1, p2, p3] = [p.vertex(a), p.vertex(b), p.vertex(c), p.vertex(d)];
         let edges = Edges([
