@@ -5,7 +5,8 @@
 //! the memory is written where the manifold has room, in words that mean what they say:
 //!
 //! - without points, `local_n1` is the separating axis (parry's own habit) in an [`AxisFrame`], and
-//!   `local_n2`, which nobody reads then, holds the two extreme vertices as whole numbers;
+//!   `local_n2`, which nobody reads then, holds the two extreme vertices as whole numbers; of a pair
+//!   whose balls are apart it is zero;
 //! - with points, `local_n1` is the contact normal, and the feature ids of the first point name
 //!   the features in contact.
 //!

@@ -10,8 +10,8 @@
 //! 7. [`Stage::WarmEpa`]: the depth, expanded from the previous features.
 //!
 //! A pair without a previous frame starts with the line of centres as its axis; GJK and EPA count
-//! as cold for it. A stale or wrong memory costs time, never
-//! accuracy: nothing is believed that is not re-evaluated at the present poses.
+//! as cold for it. A stale or wrong memory costs time, never accuracy: nothing is believed that is not
+//! re-evaluated at the present poses.
 
 mod corner;
 mod fan;
