@@ -105,6 +105,7 @@ pub mod bevy;
 mod both;
 pub mod dispatcher;
 pub mod epa;
+mod fours;
 pub mod gjk;
 mod greatest;
 pub mod hull;

@@ -3,6 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use parry3d::math::Pose;
 
+use crate::fours::Vectors;
 use crate::tolerance::NEARLY_UNIT;
 
 /// Maps points and directions between the frames of a pair: frame 1 is the first shape's.
@@ -10,6 +11,20 @@ use crate::tolerance::NEARLY_UNIT;
 pub struct RelativePose {
     rotation: DMat3,
     translation: DVec3,
+}
+
+/// What makes a unit of something that is about one, by its length squared.
+///
+/// One Newton step of the reciprocal root; a root and a division would be the longest dependency of a
+/// whole separated query. Off by 3/8 of the excess squared.
+#[inline(always)]
+pub(crate) fn to_unit(length_squared: f64) -> f64 {
+    let excess = length_squared - 1.0;
+    if excess.abs() < NEARLY_UNIT {
+        1.0 - 0.5 * excess
+    } else {
+        length_squared.sqrt().recip()
+    }
 }
 
 impl RelativePose {
@@ -26,16 +41,8 @@ impl RelativePose {
     pub(crate) fn from_valid(pos12: &Pose) -> Self {
         let q = pos12.rotation;
         let q = DQuat::from_xyzw(q.x.into(), q.y.into(), q.z.into(), q.w.into());
-        let excess = q.length_squared() - 1.0;
-        // One Newton step of the reciprocal root; a root and a division would be the longest
-        // dependency of a whole separated query. Off by 3/8 of the excess squared.
-        let scale = if excess.abs() < NEARLY_UNIT {
-            1.0 - 0.5 * excess
-        } else {
-            (1.0 + excess).sqrt().recip()
-        };
         Self {
-            rotation: DMat3::from_quat(q * scale),
+            rotation: DMat3::from_quat(q * to_unit(q.length_squared())),
             translation: pos12.translation.as_dvec3(),
         }
     }
@@ -78,6 +85,17 @@ impl RelativePose {
     #[inline]
     pub fn point_to_2(&self, p: DVec3) -> DVec3 {
         self.direction_to_2(p - self.translation)
+    }
+
+    /// Four points of frame 1, in frame 2.
+    #[inline(always)]
+    pub(crate) fn points_to_2(&self, points: Vectors) -> Vectors {
+        let from = points - self.translation;
+        Vectors([
+            from.dot(self.rotation.x_axis),
+            from.dot(self.rotation.y_axis),
+            from.dot(self.rotation.z_axis),
+        ])
     }
 
     /// A direction of frame 2, in frame 1.

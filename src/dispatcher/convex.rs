@@ -110,6 +110,11 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         let pose = pair.pose(self.pos12);
         let max_distance = pair.between_cores(self.prediction);
         let mut cost = Cost::default();
+        if half_space::has_ball_apart(pair, &pose, max_distance) {
+            self.stats.record(Stage::Balls, &cost);
+            cache::forget(self.manifold);
+            return Some(());
+        }
         let memory = cache::read(self.manifold, pair.swapped, AxisFrame::First);
         let near = half_space::deepest(pair, &pose, &memory, &mut cost);
         if near.signed_distance > max_distance {

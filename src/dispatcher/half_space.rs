@@ -8,7 +8,16 @@ use crate::query::{Feature, Memory, Proximity};
 use crate::stats::Cost;
 use crate::support::Support;
 
+/// Whether the ball around a hull is above a half-space by more than `beyond`. All hulls of a world are
+/// in a pair with its ground, and most of them end here.
+#[inline(always)]
+pub(super) fn has_ball_apart(pair: &Pair<'_, HalfSpace>, pose: &RelativePose, beyond: f64) -> bool {
+    let center = pose.point_to_2(pair.hull.center());
+    pair.other.normal.dot(center) - pair.hull.radius() > beyond
+}
+
 /// The vertex of a hull that is deepest in a half-space.
+#[inline(always)]
 pub(super) fn deepest(
     pair: &Pair<'_, HalfSpace>,
     pose: &RelativePose,

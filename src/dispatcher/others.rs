@@ -8,6 +8,7 @@ use parry3d::shape::{
     Segment as ParrySegment, Triangle,
 };
 
+use crate::pose::to_unit;
 use crate::primitive::{Cone, CuboidPolytope, Cylinder, Segment, TrianglePolytope};
 use crate::support::Support;
 use crate::tolerance::THINNEST;
@@ -18,8 +19,11 @@ pub(super) struct HalfSpace {
 }
 
 pub(super) fn half_space(half_space: &ParryHalfSpace) -> Option<HalfSpace> {
-    let normal = half_space.normal.as_dvec3().try_normalize()?;
-    Some(HalfSpace { normal })
+    let normal = half_space.normal.as_dvec3();
+    let squared = normal.length_squared();
+    (squared > 0.0 && squared.is_finite()).then(|| HalfSpace {
+        normal: normal * to_unit(squared),
+    })
 }
 
 /// A shape of parry's with a curved surface.

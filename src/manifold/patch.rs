@@ -204,7 +204,7 @@ impl<'s> Patch<'s> {
 /// The face that is in contact: the feature itself, or that next to it which faces the other
 /// shape most.
 #[inline]
-pub(super) fn facing(shape: &impl Polytope, feature: Feature, outward: DVec3) -> FaceId {
+fn facing(shape: &impl Polytope, feature: Feature, outward: DVec3) -> FaceId {
     match feature {
         Feature::Face(face) => face,
         Feature::Vertex(vertex) => shape.face_at(vertex, outward),

@@ -19,8 +19,8 @@ mod feature;
 mod trail;
 mod walk;
 
-pub(crate) use feature::Verdict;
 pub use feature::{Feature, vertices};
+pub(crate) use feature::{Verdict, vertex_of};
 
 use glam::DVec3;
 

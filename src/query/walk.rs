@@ -11,6 +11,7 @@ use wide::{f64x4, u64x4};
 
 use super::feature::{Feature, Side};
 use crate::both::both;
+use crate::fours::Vectors;
 use crate::greatest::{Greatest, Top};
 use crate::pose::RelativePose;
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
@@ -90,30 +91,13 @@ fn first_turn<P: Polytope>(p: &P, vertex: VertexId, [normal, sideways]: [DVec3; 
 
 /// The edges at a vertex, and the vertices at their other ends, in fours.
 #[inline(always)]
-fn edges<P: Polytope>(p: &P, vertex: VertexId) -> impl Iterator<Item = (u64x4, Edges)> {
+fn edges<P: Polytope>(p: &P, vertex: VertexId) -> impl Iterator<Item = (u64x4, Vectors)> {
     let corner = p.vertex(vertex);
-    p.neighbors_in_fours(vertex).map(move |ends| {
-        let [a, b, c, d] = ends;
-        let [p0, p1, p2, p3] = [p.vertex(a), p.vertex(b), p.vertex(c), p.vertex(d)];
-        let edges = Edges([
-            f64x4::new([p0.x, p1.x, p2.x, p3.x]) - corner.x,
-            f64x4::new([p0.y, p1.y, p2.y, p3.y]) - corner.y,
-            f64x4::new([p0.z, p1.z, p2.z, p3.z]) - corner.z,
-        ]);
-        let ends = u64x4::new([a.into(), b.into(), c.into(), d.into()]);
-        (ends, edges)
+    p.neighbors_in_fours(vertex).map(move |[a, b, c, d]| {
+        let ends = Vectors::new([p.vertex(a), p.vertex(b), p.vertex(c), p.vertex(d)]);
+        let names = u64x4::new([a.into(), b.into(), c.into(), d.into()]);
+        (names, ends - corner)
     })
-}
-
-/// Four vectors, coordinate by coordinate.
-struct Edges([f64x4; 3]);
-
-impl Edges {
-    #[inline(always)]
-    fn dot(&self, dir: DVec3) -> f64x4 {
-        let [x, y, z] = self.0;
-        x * dir.x + y * dir.y + z * dir.z
-    }
 }
 
 /// An edge of shape `p` at a vertex of shape `q`.

@@ -90,8 +90,9 @@ pub fn vertices<A: Polytope, B: Polytope>(
     ]
 }
 
+/// A vertex of a feature, valid for its shape.
 #[inline]
-fn vertex_of(shape: &impl Polytope, feature: Feature) -> VertexId {
+pub(crate) fn vertex_of(shape: &impl Polytope, feature: Feature) -> VertexId {
     let vertex = match feature {
         Feature::Vertex(v) => v,
         Feature::Edge(e) => shape.edge(e).map_or(0, |ends| ends[0]),

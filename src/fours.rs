@@ -1,0 +1,65 @@
+//! Four vectors at once, coordinate by coordinate.
+
+use std::ops::{Add, Sub};
+
+use glam::DVec3;
+use wide::{f32x4, f64x4};
+
+/// Four vectors.
+#[derive(Clone, Copy)]
+pub(crate) struct Vectors(pub [f64x4; 3]);
+
+impl Vectors {
+    #[inline(always)]
+    pub fn new([a, b, c, d]: [DVec3; 4]) -> Self {
+        Self([
+            f64x4::new([a.x, b.x, c.x, d.x]),
+            f64x4::new([a.y, b.y, c.y, d.y]),
+            f64x4::new([a.z, b.z, c.z, d.z]),
+        ])
+    }
+
+    /// Multiples of one vector.
+    #[inline(always)]
+    pub fn along(dir: DVec3, lengths: f64x4) -> Self {
+        Self([lengths * dir.x, lengths * dir.y, lengths * dir.z])
+    }
+
+    #[inline(always)]
+    pub fn dot(self, dir: DVec3) -> f64x4 {
+        let [x, y, z] = self.0;
+        x * dir.x + y * dir.y + z * dir.z
+    }
+
+    #[inline(always)]
+    pub fn as_f32(self) -> [f32x4; 3] {
+        let [x, y, z] = self.0;
+        [as_f32(x), as_f32(y), as_f32(z)]
+    }
+}
+
+impl Add for Vectors {
+    type Output = Self;
+
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        Self([x + a, y + b, z + c])
+    }
+}
+
+impl Sub<DVec3> for Vectors {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: DVec3) -> Self {
+        let [x, y, z] = self.0;
+        Self([x - other.x, y - other.y, z - other.z])
+    }
+}
+
+#[inline(always)]
+pub(crate) fn as_f32(four: f64x4) -> f32x4 {
+    let [a, b, c, d] = four.to_array();
+    f32x4::new([a as f32, b as f32, c as f32, d as f32])
+}
