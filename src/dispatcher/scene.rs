@@ -207,13 +207,8 @@ impl PairVisitor for SeparationQuery<'_> {
         pair: &Pair<'_, HalfSpace>,
         _: &mut Scratch,
     ) -> Option<Self::Answer> {
-        let near = over_half_space(pair, self.pos12)?;
-        let is_near = near.signed_distance <= f64::from(self.max_distance);
-        Some(if is_near {
-            Separation::of(near)
-        } else {
-            Separation::Beyond
-        })
+        let near = over_half_space(pair, self.pos12, self.max_distance)?;
+        Some(near.map_or(Separation::Beyond, Separation::of))
     }
 }
 
@@ -221,10 +216,20 @@ fn valid_pose<B>(pair: &Pair<'_, B>, pos12: &Pose) -> Option<RelativePose> {
     RelativePose::is_valid(pos12).then(|| pair.pose(pos12))
 }
 
-fn over_half_space(pair: &Pair<'_, HalfSpace>, pos12: &Pose) -> Option<Near> {
+/// Where a hull is deepest in a half-space, or `None` if it is farther away than `max_distance`.
+fn over_half_space(
+    pair: &Pair<'_, HalfSpace>,
+    pos12: &Pose,
+    max_distance: Real,
+) -> Option<Option<Near>> {
     let pose = valid_pose(pair, pos12)?;
+    let max_distance = pair.between_cores(max_distance);
+    if half_space::has_ball_apart(pair, &pose, max_distance) {
+        return Some(None);
+    }
     let deepest = half_space::deepest(pair, &pose, &Memory::None, &mut Cost::default());
-    Some(Near::of_proximity(&deepest, &Seen::new(pair, &pose)))
+    let is_near = deepest.signed_distance <= max_distance;
+    Some(is_near.then(|| Near::of_proximity(&deepest, &Seen::new(pair, &pose))))
 }
 
 struct ContactQuery<'a> {
@@ -285,8 +290,7 @@ impl PairVisitor for ContactQuery<'_> {
         pair: &Pair<'_, HalfSpace>,
         _: &mut Scratch,
     ) -> Option<Self::Answer> {
-        let near = over_half_space(pair, self.pos12)?;
-        let within = near.signed_distance <= f64::from(self.prediction);
-        Some(within.then(|| near.contact()))
+        let near = over_half_space(pair, self.pos12, self.prediction)?;
+        Some(near.map(|near| near.contact()))
     }
 }

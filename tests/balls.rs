@@ -1,0 +1,103 @@
+//! Pairs whose balls are apart: no vertex is looked at, nothing is kept, and nothing is lost when they
+//! come near again.
+
+mod common;
+
+use common::generate::Dice;
+use isa_gjk::{IsaGjkDispatcher, Stage};
+use parry3d::math::{Pose, Rotation, Vector};
+use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
+use parry3d::shape::{Shape, SharedShape};
+
+const PREDICTION: f32 = 0.01;
+
+type Manifolds = Vec<ContactManifold<(), ()>>;
+
+fn update(
+    dispatcher: &IsaGjkDispatcher,
+    pose: &Pose,
+    [a, b]: [&dyn Shape; 2],
+    manifolds: &mut Manifolds,
+) {
+    dispatcher
+        .contact_manifolds(pose, a, b, PREDICTION, manifolds, &mut None)
+        .expect("supported");
+}
+
+/// Hulls over a plane, from below it to high above, in either order.
+#[test]
+fn what_is_high_above_the_ground_is_known_by_its_ball() {
+    let mut dice = Dice::new(81);
+    let ground = SharedShape::halfspace(Vector::Y);
+    let dispatcher = IsaGjkDispatcher::default();
+    let (mut high, mut low) = (0, 0);
+    for vertices in [4, 8, 40, 200] {
+        let hull = dice.hull(vertices, 0.5).shape;
+        for step in 0..100 {
+            let height = 0.03 * step as f32 - 0.5;
+            let turn = Rotation::from_scaled_axis(dice.direction().as_vec3());
+            let pose = Pose::from_parts(Vector::new(3.0, height, -2.0), turn);
+            let polyhedron = hull.as_convex_polyhedron().expect("a plain hull");
+            let heights = polyhedron.points().iter().map(|&p| (pose * p).y);
+            let lowest = heights.fold(f32::INFINITY, f32::min);
+            for (pose, shapes) in [
+                (pose, [&*ground, &*hull]),
+                (pose.inverse(), [&*hull, &*ground]),
+            ] {
+                let mut manifolds = Manifolds::new();
+                let before = dispatcher.stats();
+                update(&dispatcher, &pose, shapes, &mut manifolds);
+                let stats = dispatcher.stats().since(&before);
+                if stats.answered[Stage::Balls as usize] == 1 {
+                    assert_eq!(stats.supports, 0);
+                    assert!(lowest > PREDICTION, "{lowest} above the ground");
+                    high += 1;
+                }
+                let deepest = manifolds[0].points.iter().map(|point| point.dist);
+                let deepest = deepest.fold(f32::INFINITY, f32::min);
+                if lowest < 0.99 * PREDICTION {
+                    assert!((deepest - lowest).abs() < 1e-5, "{deepest} for {lowest}");
+                    low += 1;
+                } else if lowest > 1.01 * PREDICTION {
+                    assert_eq!(deepest, f32::INFINITY, "apart by {lowest}");
+                }
+            }
+        }
+    }
+    assert!(high > 200 && low > 100, "{high} high, {low} low");
+}
+
+/// A pair that meets, parts until its balls are apart, and meets again on another side has the contacts
+/// of a pair that is new.
+#[test]
+fn a_pair_that_comes_back_has_the_contacts_of_a_new_one() {
+    let mut dice = Dice::new(82);
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut met = 0;
+    for _ in 0..60 {
+        let shapes = [24, 120].map(|vertices| dice.hull(vertices, 1.0).shape);
+        let shapes = shapes.each_ref().map(|shape| &**shape);
+        let mut manifolds = Manifolds::new();
+        for _ in 0..4 {
+            let direction = dice.direction().as_vec3();
+            let turn = Rotation::from_scaled_axis(dice.direction().as_vec3());
+            for distance in [3.0, 0.6, 0.5, 3.0] {
+                let pose = Pose::from_parts(direction * distance, turn);
+                update(&dispatcher, &pose, shapes, &mut manifolds);
+                let mut fresh = Manifolds::new();
+                update(&dispatcher, &pose, shapes, &mut fresh);
+                let [kept, new] = [&manifolds[0], &fresh[0]];
+                let depth = |manifold: &ContactManifold<(), ()>| {
+                    let distances = manifold.points.iter().map(|point| point.dist);
+                    distances.fold(f32::INFINITY, f32::min)
+                };
+                assert_eq!(kept.points.is_empty(), new.points.is_empty());
+                if !kept.points.is_empty() {
+                    assert!((depth(kept) - depth(new)).abs() < 1e-5);
+                    met += 1;
+                }
+            }
+        }
+    }
+    assert!(met > 200, "{met} contacts");
+}
