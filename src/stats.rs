@@ -7,7 +7,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Stage {
-    /// The balls around the shapes are apart.
+    /// The balls around the shapes are apart, or that around a hull is above a half-space.
     Balls,
     /// One or two support pairs proved separation: along the axis of the previous frame (the line
     /// of centres, for a new pair), or along one tilted from it.
