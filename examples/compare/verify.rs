@@ -173,9 +173,14 @@ impl Question<'_> {
 
     /// How far the shapes are apart along the normal of a manifold. Without points it keeps an axis
     /// from whichever shape was the first to the kernels, in the frame of the larger one: what any of
-    /// these readings separates is apart.
+    /// these readings separates is apart. Where the balls are apart it keeps none; parry says how far.
     fn separation_shown(&self, manifold: &ContactManifold) -> Option<f64> {
         let normal = manifold.local_n1;
+        if normal == Vector::ZERO {
+            let [shape_1, shape_2] = self.shapes;
+            let distance = DefaultQueryDispatcher.distance(&self.pos12, shape_1, shape_2);
+            return Some(distance.ok()?.distance.into());
+        }
         let separation = self.separation(normal)?;
         if !manifold.points.is_empty() {
             return Some(separation);
