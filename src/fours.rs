@@ -10,8 +10,10 @@ use wide::{f32x4, f64x4};
 pub(crate) struct Vectors(pub [f64x4; 3]);
 
 impl Vectors {
+    /// The places of four things.
     #[inline(always)]
-    pub fn new([a, b, c, d]: [DVec3; 4]) -> Self {
+    pub fn of<T>([a, b, c, d]: [T; 4], place: impl Fn(T) -> DVec3) -> Self {
+        let [a, b, c, d] = [place(a), place(b), place(c), place(d)];
         Self([
             f64x4::new([a.x, b.x, c.x, d.x]),
             f64x4::new([a.y, b.y, c.y, d.y]),

@@ -72,8 +72,8 @@ pub const DEGENERATE: f64 = 1e-11;
 /// faces count as visible, so that they are replaced together and no sliver is left.
 pub const COPLANAR: f64 = 1e-14;
 
-/// A quaternion that was normalised in f32 has a squared length this near to 1; one step of
-/// Newton's method then normalises it to f64 rounding.
+/// What was normalised in f32, a quaternion or a normal, has a squared length this near to 1; one step
+/// of Newton's method then normalises it to f64 rounding.
 pub const NEARLY_UNIT: f64 = 1e-6;
 
 /// A normal in a manifold whose squared length is this near to 1 was a unit vector.

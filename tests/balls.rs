@@ -4,24 +4,15 @@
 mod common;
 
 use common::generate::Dice;
+use common::memory::{Manifold, Memory, cold_manifold};
 use isa_gjk::{IsaGjkDispatcher, Stage};
 use parry3d::math::{Pose, Rotation, Vector};
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
-use parry3d::shape::{Shape, SharedShape};
+use parry3d::shape::SharedShape;
 
 const PREDICTION: f32 = 0.01;
 
-type Manifolds = Vec<ContactManifold<(), ()>>;
-
-fn update(
-    dispatcher: &IsaGjkDispatcher,
-    pose: &Pose,
-    [a, b]: [&dyn Shape; 2],
-    manifolds: &mut Manifolds,
-) {
-    dispatcher
-        .contact_manifolds(pose, a, b, PREDICTION, manifolds, &mut None)
-        .expect("supported");
+fn depth(manifold: &Manifold) -> Option<f32> {
+    manifold.find_deepest_contact().map(|deepest| deepest.dist)
 }
 
 /// Hulls over a plane, from below it to high above, in either order.
@@ -40,21 +31,17 @@ fn what_is_high_above_the_ground_is_known_by_its_ball() {
             let polyhedron = hull.as_convex_polyhedron().expect("a plain hull");
             let heights = polyhedron.points().iter().map(|&p| (pose * p).y);
             let lowest = heights.fold(f32::INFINITY, f32::min);
-            for (pose, shapes) in [
-                (pose, [&*ground, &*hull]),
-                (pose.inverse(), [&*hull, &*ground]),
-            ] {
-                let mut manifolds = Manifolds::new();
+            for (pose, shapes) in [(pose, [&ground, &hull]), (pose.inverse(), [&hull, &ground])] {
                 let before = dispatcher.stats();
-                update(&dispatcher, &pose, shapes, &mut manifolds);
+                let manifold = cold_manifold(&dispatcher, &pose, shapes, PREDICTION);
                 let stats = dispatcher.stats().since(&before);
                 if stats.answered[Stage::Balls as usize] == 1 {
                     assert_eq!(stats.supports, 0);
                     assert!(lowest > PREDICTION, "{lowest} above the ground");
                     high += 1;
                 }
-                let deepest = manifolds[0].points.iter().map(|point| point.dist);
-                let deepest = deepest.fold(f32::INFINITY, f32::min);
+                let deepest = depth(&manifold.expect("supported"));
+                let deepest = deepest.unwrap_or(f32::INFINITY);
                 if lowest < 0.99 * PREDICTION {
                     assert!((deepest - lowest).abs() < 1e-5, "{deepest} for {lowest}");
                     low += 1;
@@ -76,24 +63,19 @@ fn a_pair_that_comes_back_has_the_contacts_of_a_new_one() {
     let mut met = 0;
     for _ in 0..60 {
         let shapes = [24, 120].map(|vertices| dice.hull(vertices, 1.0).shape);
-        let shapes = shapes.each_ref().map(|shape| &**shape);
-        let mut manifolds = Manifolds::new();
+        let shapes = shapes.each_ref();
+        let mut memory = Memory::default();
         for _ in 0..4 {
             let direction = dice.direction().as_vec3();
             let turn = Rotation::from_scaled_axis(dice.direction().as_vec3());
             for distance in [3.0, 0.6, 0.5, 3.0] {
                 let pose = Pose::from_parts(direction * distance, turn);
-                update(&dispatcher, &pose, shapes, &mut manifolds);
-                let mut fresh = Manifolds::new();
-                update(&dispatcher, &pose, shapes, &mut fresh);
-                let [kept, new] = [&manifolds[0], &fresh[0]];
-                let depth = |manifold: &ContactManifold<(), ()>| {
-                    let distances = manifold.points.iter().map(|point| point.dist);
-                    distances.fold(f32::INFINITY, f32::min)
-                };
-                assert_eq!(kept.points.is_empty(), new.points.is_empty());
-                if !kept.points.is_empty() {
-                    assert!((depth(kept) - depth(new)).abs() < 1e-5);
+                let new = cold_manifold(&dispatcher, &pose, shapes, PREDICTION);
+                let kept = memory.update(&dispatcher, &pose, shapes, PREDICTION);
+                let [kept, new] = [kept, new.as_ref()].map(|m| depth(m.expect("supported")));
+                assert_eq!(kept.is_none(), new.is_none());
+                if let (Some(kept), Some(new)) = (kept, new) {
+                    assert!((kept - new).abs() < 1e-5);
                     met += 1;
                 }
             }

@@ -1,6 +1,6 @@
 //! Up to four contacts, coordinate by coordinate: so they are made and written four at a time.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use wide::f32x4;
 
 use super::polygon::LANES;
@@ -47,39 +47,23 @@ impl Contacts {
 
     /// The witness alone.
     pub fn witness(proximity: &Proximity, pose: &RelativePose) -> Self {
-        Self::new(&[ContactPoint::witness(proximity, pose)])
-    }
-
-    /// At most four.
-    pub(super) fn new(points: &[ContactPoint]) -> Self {
-        let rows = |of: &dyn Fn(&ContactPoint) -> Vec3| {
-            [0, 1, 2].map(|axis| row(points, |point| of(point)[axis]))
-        };
-        let mut features = [[Feature::Vertex(0); 2]; MAX_POINTS];
-        for (features, point) in features.iter_mut().zip(points) {
-            *features = point.features;
-        }
+        let splat = |p: DVec3| p.as_vec3().to_array().map(f32x4::splat);
         Self {
-            on_1: rows(&|point| point.on_1),
-            on_2: rows(&|point| point.on_2),
-            distance: row(points, |point| point.distance),
-            features,
-            len: points.len(),
+            on_1: splat(proximity.on_1),
+            on_2: splat(pose.point_to_2(proximity.on_2)),
+            distance: f32x4::splat(proximity.signed_distance as f32),
+            features: [proximity.features; MAX_POINTS],
+            len: 1,
         }
     }
-}
 
-fn row(points: &[ContactPoint], of: impl Fn(&ContactPoint) -> f32) -> f32x4 {
-    f32x4::new([0, 1, 2, 3].map(|lane| points.get(lane).map_or(0.0, &of)))
-}
-
-impl ContactPoint {
-    pub(super) fn witness(proximity: &Proximity, pose: &RelativePose) -> Self {
+    pub(super) fn none() -> Self {
         Self {
-            on_1: proximity.on_1.as_vec3(),
-            on_2: pose.point_to_2(proximity.on_2).as_vec3(),
-            distance: proximity.signed_distance as f32,
-            features: proximity.features,
+            on_1: [f32x4::ZERO; 3],
+            on_2: [f32x4::ZERO; 3],
+            distance: f32x4::ZERO,
+            features: [[Feature::Vertex(0); 2]; MAX_POINTS],
+            len: 0,
         }
     }
 }

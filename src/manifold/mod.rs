@@ -68,6 +68,16 @@ impl Chosen {
         ]
     }
 
+    /// The nearest of those beyond reach, while there is room.
+    #[inline(always)]
+    fn fill_up(&mut self, candidates: &mut Candidates) {
+        while self.len < MAX_POINTS
+            && let Some(corner) = candidates.take_beyond()
+        {
+            self.push(Some(corner));
+        }
+    }
+
     /// Those that there are. Which these are is not predictable.
     #[inline(always)]
     fn push_all(&mut self, corners: [Option<usize>; MAX_POINTS - 1]) {
@@ -123,11 +133,7 @@ pub fn contacts<A: Polytope, B: Polytope>(
     if chosen.len < MAX_POINTS {
         chosen.push(first);
     }
-    while chosen.len < MAX_POINTS
-        && let Some(corner) = candidates.take_beyond()
-    {
-        chosen.push(Some(corner));
-    }
+    chosen.fill_up(candidates);
     let witness = (least, proximity.features);
     patch.contacts(cso, witness, (polygons, candidates), &chosen)
 }
@@ -149,7 +155,7 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
     } = scratch;
     let patch = Patch::new(cso, proximity, normal, planes);
     let Some(patch) = &patch else {
-        return Contacts::new(&[]);
+        return Contacts::none();
     };
     patch.clip(cso, polygons);
     let corners = &polygons.corners;

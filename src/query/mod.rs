@@ -112,17 +112,15 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
             return Some((apart, Stage::Balls));
         }
         let (axis, start) = match *memory {
-            Memory::Axis(axis, ids) => (axis, self.valid_start(ids)),
+            Memory::Axis(axis, ids) => (axis, ids),
             _ => {
                 let axis = self.cso.towards_origin();
                 (axis, self.cso.start(axis))
             }
         };
-        let apart =
-            gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost).or_else(|vertex| {
-                let tilted = tilted(axis, &vertex);
-                gjk::test_axis(self.cso, tilted, vertex.ids, self.max_distance, self.cost)
-            });
+        let apart = self
+            .test_axis(axis, start)
+            .or_else(|vertex| self.test_axis(tilted(axis, &vertex), vertex.ids));
         Some((apart.ok()?, Stage::Axis))
     }
 
@@ -139,6 +137,18 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
                 _ => self.cso.start(axis),
             },
         })
+    }
+
+    /// Whether an axis separates; if not, the vertex that is too near along it. `ids` may be those of a
+    /// memory: it is started from those that there are.
+    #[inline(always)]
+    pub(crate) fn test_axis(
+        &mut self,
+        axis: DVec3,
+        ids: [VertexId; 2],
+    ) -> Result<SeparatingAxis, CsoVertex> {
+        let start = self.valid_start(ids);
+        gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost)
     }
 
     fn valid_start(&self, ids: [VertexId; 2]) -> [VertexId; 2] {
@@ -170,7 +180,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     fn run_near(&mut self, memory: &Memory) -> Option<(Answer, Stage)> {
         match *memory {
             Memory::None => self.begin(),
-            Memory::Axis(axis, ids) => self.follow_axis(axis, self.valid_start(ids), WARM),
+            Memory::Axis(axis, ids) => self.follow_axis(axis, ids, WARM),
             Memory::Contact(normal, features) => {
                 let verdict = self.certify(features);
                 self.follow_contact(normal, features, &verdict)
@@ -190,22 +200,10 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         start: [VertexId; 2],
         gjk: [Stage; 2],
     ) -> Option<(Answer, Stage)> {
-        match gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost) {
+        match self.test_axis(axis, start) {
             Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
             Err(vertex) => self.turn_axis(axis, vertex, gjk),
         }
-    }
-
-    /// Whether an axis that is remembered with these vertices separates; if not, the vertex that is too
-    /// near along it.
-    #[inline(always)]
-    pub(crate) fn test_axis(
-        &mut self,
-        axis: DVec3,
-        ids: [VertexId; 2],
-    ) -> Result<SeparatingAxis, CsoVertex> {
-        let start = self.valid_start(ids);
-        gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost)
     }
 
     /// Goes on where an axis does not separate. Often one does that is tilted away from where the shapes
@@ -220,7 +218,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             return self.run_gjk(&[vertex], gjk);
         }
         let tilted = tilted(axis, &vertex);
-        match gjk::test_axis(self.cso, tilted, vertex.ids, self.max_distance, self.cost) {
+        match self.test_axis(tilted, vertex.ids) {
             Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
             Err(second) => match walk::around(self.cso, &second, tilted) {
                 Some(features) => self.follow(tilted, features, gjk),

@@ -93,10 +93,10 @@ fn first_turn<P: Polytope>(p: &P, vertex: VertexId, [normal, sideways]: [DVec3; 
 #[inline(always)]
 fn edges<P: Polytope>(p: &P, vertex: VertexId) -> impl Iterator<Item = (u64x4, Vectors)> {
     let corner = p.vertex(vertex);
-    p.neighbors_in_fours(vertex).map(move |[a, b, c, d]| {
-        let ends = Vectors::new([p.vertex(a), p.vertex(b), p.vertex(c), p.vertex(d)]);
+    p.neighbors_in_fours(vertex).map(move |ends| {
+        let [a, b, c, d] = ends;
         let names = u64x4::new([a.into(), b.into(), c.into(), d.into()]);
-        (names, ends - corner)
+        (names, Vectors::of(ends, |end| p.vertex(end)) - corner)
     })
 }
 
