@@ -9,5 +9,7 @@ pub mod memory;
 pub mod oracle;
 pub mod pose;
 pub mod report;
+pub mod scene;
+pub mod twins;
 pub mod world;
 pub mod zoo;
