@@ -363,6 +363,18 @@ fn installed_twice_a_run_is_still_one_step() {
     assert_near(simulation.get::<Velocity>(cube).linear.y, -9.81 * dt);
 }
 
+/// Messages that somebody has registered before, and forgets himself.
+#[test]
+fn messages_that_are_there_already_are_no_obstacle() {
+    let mut world = World::new();
+    world.init_resource::<Messages<CollisionEvent>>();
+    let mut schedule = Schedule::default();
+    install(&mut world, &mut schedule);
+    let cube = world.spawn(Collider::from(cube(HALF))).id();
+    schedule.run(&mut world);
+    assert!(world.get::<Velocity>(cube).expect("a body").linear.y < 0.0);
+}
+
 /// A system before the sets takes part in their step, one after them sees its outcome.
 #[test]
 fn the_systems_of_a_user_run_before_or_after_the_step() {

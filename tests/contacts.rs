@@ -7,7 +7,7 @@ use isa_gjk::IsaGjkDispatcher;
 use oorandom::Rand32;
 use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, TrackedContact};
-use parry3d::shape::{ConvexPolyhedron, SharedShape};
+use parry3d::shape::{ConvexPolyhedron, PackedFeatureId, SharedShape};
 
 type Manifold = ContactManifold<(), u32>;
 
@@ -118,6 +118,22 @@ fn no_impulse_is_lost_when_contacts_change() {
     let mut data: Vec<u32> = after.iter().map(|point| point.data).collect();
     data.sort_unstable();
     assert_eq!(data, [1, 2, 3, 4]);
+}
+
+/// The features of another dispatcher's points may be unknown, and contacts fewer than there is room for.
+#[test]
+fn no_impulse_is_lost_to_contacts_that_are_not_there() {
+    let shapes = [flat_box(), SharedShape::ball(0.5)];
+    let pose = Pose::translation(0.2, HALF_HEIGHT + 0.5, 0.1);
+    let unknown = PackedFeatureId::UNKNOWN;
+    let mut foreign = TrackedContact::new(Vector::ZERO, Vector::ZERO, unknown, unknown, 0.0);
+    foreign.data = 7;
+    let mut manifold = Manifold::new();
+    manifold.points = vec![foreign];
+    let mut manifolds = vec![manifold];
+    update_pair(&mut manifolds, shapes.each_ref(), pose, 0.02);
+    let data: Vec<u32> = manifolds[0].points.iter().map(|p| p.data).collect();
+    assert_eq!(data, [7]);
 }
 
 fn flat_box() -> SharedShape {

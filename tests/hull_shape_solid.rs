@@ -160,6 +160,28 @@ fn rays_hit_the_solid_where_they_enter_it() {
     );
 }
 
+/// Rays without a direction, or that are no numbers.
+#[test]
+fn rays_that_are_none_hit_nothing() {
+    with_twins(|name, hull, ours| {
+        let corners = &hull.solid.points;
+        let inside = (corners.iter().sum::<DVec3>() / corners.len() as f64).as_vec3();
+        let outside = inside + Vector::X * 2.0 * hull.solid.diameter() as Real;
+        let nan = Vector::new(Real::NAN, 0.0, 1.0);
+        for (origin, dir) in [
+            (inside, Vector::ZERO),
+            (outside, Vector::ZERO),
+            (outside, nan),
+            (nan, Vector::X),
+            (nan, nan),
+        ] {
+            let ray = Ray::new(origin, dir);
+            let hit = ours.cast_local_ray_and_get_normal(&ray, Real::INFINITY, false);
+            assert!(hit.is_none(), "{name}: {ray:?} hits at {hit:?}");
+        }
+    });
+}
+
 #[test]
 fn points_project_to_the_nearest_point_of_the_solid() {
     let mut dice = Dice::new(3);

@@ -332,6 +332,29 @@ fn rounded_borders_are_met_first() {
     assert!((hit.witness2.z + 0.25).abs() < 1.0e-5, "{hit:?}");
 }
 
+/// The hull inside of a rounded one may be at the same address, and has no border.
+#[test]
+fn a_hull_is_not_its_rounded_self() {
+    let corners = [Vector::ZERO, Vector::X, Vector::Y, Vector::Z];
+    let round = SharedShape::round_convex_hull(&corners, 0.25).expect("a solid");
+    let round = round.as_round_convex_polyhedron().expect("rounded");
+    let pose = Pose::translation(0.0, 0.0, 2.0);
+    let between = |a: &dyn Shape, b: &dyn Shape| {
+        let answer = dispatcher().distance(&pose, a, b);
+        f64::from(answer.expect("supported").distance)
+    };
+    let hull = &round.inner_shape;
+    for (a, b, borders) in [
+        (hull as &dyn Shape, hull as &dyn Shape, 0.0),
+        (hull, round, 1.0),
+        (round, hull, 1.0),
+        (round, round, 2.0),
+    ] {
+        let error = between(a, b) - (1.0 - borders * 0.25);
+        assert!(error.abs() < TOLERANCE, "{borders} borders: off by {error}");
+    }
+}
+
 /// A motion whose numbers are no numbers meets nothing, and no assertion.
 #[test]
 fn impossible_casts_meet_nothing() {

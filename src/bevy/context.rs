@@ -96,6 +96,12 @@ impl PhysicsContext {
         context
     }
 
+    /// The dispatcher whose stats are told, and which is promised within a step that shapes do not
+    /// change. To be set in the narrow phase of a `world` that is put in the place of this one.
+    pub fn dispatcher(&self) -> &IsaGjkDispatcher {
+        &self.dispatcher
+    }
+
     /// The body of an entity, once a step has begun since it was spawned.
     pub fn body(&self, entity: Entity) -> Option<RigidBodyHandle> {
         self.entities.get(&entity).map(|handles| handles.body)

@@ -7,7 +7,7 @@ use bevy_time::{Fixed, Time};
 
 use super::collision::CollisionEvent;
 use super::context::PhysicsContext;
-use super::systems::{NarrowPhaseStats, PhysicsSystems, add_systems};
+use super::systems::{NarrowPhaseStats, PhysicsSystems, add_systems, begin_install};
 
 /// Steps a [`PhysicsContext`] in `FixedPostUpdate`, by the time step of `Time<Fixed>`.
 ///
@@ -45,9 +45,10 @@ impl PhysicsPlugin {
 
 impl Plugin for PhysicsPlugin {
     fn build(&self, app: &mut App) {
-        app.init_resource::<PhysicsContext>()
-            .init_resource::<NarrowPhaseStats>()
-            .add_message::<CollisionEvent>()
+        if !begin_install(app.world_mut()) {
+            return;
+        }
+        app.add_message::<CollisionEvent>()
             .edit_schedule(FixedPostUpdate, add_systems)
             .add_systems(
                 FixedPostUpdate,

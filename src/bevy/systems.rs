@@ -72,14 +72,30 @@ pub struct NarrowPhaseStats {
 /// second call for the same world does nothing. [`CollisionEvent`]s can be read until the end of
 /// the step after their own.
 pub fn install(world: &mut World, schedule: &mut Schedule) {
-    if world.contains_resource::<Messages<CollisionEvent>>() {
+    if !begin_install(world) {
         return;
     }
-    world.init_resource::<Messages<CollisionEvent>>();
+    // Who has made them forgets them.
+    if !world.contains_resource::<Messages<CollisionEvent>>() {
+        world.init_resource::<Messages<CollisionEvent>>();
+        schedule.add_systems(expire_messages.in_set(PhysicsSystems::SyncBackend));
+    }
+    add_systems(schedule);
+}
+
+/// That something steps a world.
+#[derive(Resource)]
+struct Installed;
+
+/// Adds the resources to a world that nothing steps yet; `false` for others.
+pub(super) fn begin_install(world: &mut World) -> bool {
+    if world.contains_resource::<Installed>() {
+        return false;
+    }
+    world.insert_resource(Installed);
     world.init_resource::<PhysicsContext>();
     world.init_resource::<NarrowPhaseStats>();
-    schedule.add_systems(expire_messages.in_set(PhysicsSystems::SyncBackend));
-    add_systems(schedule);
+    true
 }
 
 /// All systems but the one that forgets old messages, which an `App` has already.

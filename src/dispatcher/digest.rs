@@ -8,8 +8,9 @@
 //! processors have an instruction. A round maps states one to one whatever the key, and keys whatever the
 //! state. So where points differ within some 241 bytes, which are twenty points, the digests differ for
 //! certain: each lane sees one difference at most, and nothing undoes it. A lane that sees more of them
-//! ends as it would have without with a chance of one in 2^128; if all points changed, that goes for
-//! each of the sixteen. (Unless somebody looks for such points: this keeps no secret.)
+//! ends as it would have without with a chance of about one in 2^128; if all points changed, that goes
+//! for each of the sixteen. (This supposes that the changes have nothing to do with AES. Who looks for
+//! points that deceive it finds some: it keeps no secret.)
 
 use glam::Vec3;
 
@@ -83,17 +84,24 @@ mod rounds {
     /// `None` where there is no instruction for them.
     #[inline]
     pub fn lanes(bytes: &[u8]) -> Option<[u128; LANES]> {
-        if is_x86_feature_detected!("vaes") && is_x86_feature_detected!("avx2") {
-            // SAFETY: the two features that the function needs are there.
+        if !has_rounds() {
+            None
+        } else if is_x86_feature_detected!("vaes") && is_x86_feature_detected!("avx2") {
+            // SAFETY: the features that the function names are there, and `aes` and `avx`, which they
+            // imply.
             #[expect(unsafe_code)]
             Some(unsafe { take_in_twos(bytes) })
-        } else if is_x86_feature_detected!("aes") && is_x86_feature_detected!("avx") {
-            // SAFETY: the two features that the function needs are there.
+        } else {
+            // SAFETY: the features that the function names are there, as `has_rounds` says.
             #[expect(unsafe_code)]
             Some(unsafe { take_in_ones(bytes) })
-        } else {
-            None
         }
+    }
+
+    /// Without AVX the lanes would be more than the registers hold.
+    #[inline]
+    pub fn has_rounds() -> bool {
+        is_x86_feature_detected!("aes") && is_x86_feature_detected!("avx")
     }
 
     /// Two lanes with one instruction.
@@ -151,7 +159,7 @@ mod tests {
     fn many_points_have_one_where_there_are_rounds() {
         assert!(Digest::of(&[Vec3::ONE; FEWEST - 1]).is_none());
         let many = Digest::of(&[Vec3::ONE; FEWEST]);
-        assert_eq!(many.is_some(), is_x86_feature_detected!("aes"));
+        assert_eq!(many.is_some(), rounds::has_rounds());
     }
 
     proptest! {

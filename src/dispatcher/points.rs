@@ -156,7 +156,7 @@ fn heirs<C>(
     let mut heirs = [NONE; MAX_POINTS];
     // A bit for each that has no heir yet.
     let mut left = (1_u32 << old.len()) - 1;
-    for (i, heir) in heirs.iter_mut().enumerate() {
+    for (i, heir) in heirs[..count].iter_mut().enumerate() {
         let candidates = old_ids.same(new_ids, i) & left;
         *heir = (candidates.trailing_zeros() as usize).min(NONE);
         // All but the lowest one.

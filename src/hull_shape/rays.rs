@@ -28,7 +28,8 @@ impl RayCast for HullShape {
         };
         let time = crossing.time as Real;
         let normal = (side * self.hull().face_normal(crossing.face)).as_vec3();
-        (time <= max_time_of_impact)
+        // Beyond what f32 holds is nowhere.
+        (time.is_finite() && time <= max_time_of_impact)
             .then(|| RayIntersection::new(time, normal, FeatureId::Face(crossing.face)))
     }
 }
@@ -60,6 +61,8 @@ impl HullShape {
                 return None;
             }
         }
-        (entry.time <= exit.time && exit.time >= 0.0).then_some((entry, exit))
+        // A ray without a direction, or that is no number, leaves by no face.
+        (entry.time <= exit.time && (0.0..f64::INFINITY).contains(&exit.time))
+            .then_some((entry, exit))
     }
 }
