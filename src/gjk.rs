@@ -173,8 +173,9 @@ pub fn test_axis<A: Support, B: Support>(
     }
 }
 
-/// Distance and nearest points, starting from one to three vertices of the Minkowski difference;
-/// the nearer to the origin they lie, the fewer the iterations. Ends early, with a separating
+/// Distance and nearest points, starting from one to three vertices of the Minkowski difference (of more
+/// the first three count, and without any there is no answer to trust); the nearer to the origin they
+/// lie, the fewer the iterations. Ends early, with a separating
 /// axis, when the distance is proved to exceed `max_distance`.
 // Always inlined, here and in what it calls: of answers and vectors that go through memory from one
 // function to the next, each is waited for. It is a tenth of a cold query.
@@ -202,6 +203,7 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
     let absolute_gap = gap * size;
     let mut simplex = Simplex::default();
     let mut ids = [0; 2];
+    debug_assert!(!start.is_empty(), "no vertex to start from");
     for &vertex in start.iter().take(3) {
         simplex.push(vertex);
         ids = vertex.ids;
@@ -225,8 +227,8 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
                 ids,
             });
         }
-        let gap = norm - lower_bound;
-        let converged = gap <= GJK_RELATIVE_GAP * norm || gap <= absolute_gap;
+        let between = norm - lower_bound;
+        let converged = between <= GJK_RELATIVE_GAP * norm || between <= absolute_gap;
         if converged || simplex.contains(&w) {
             return Outcome::Near(closest(&simplex, &nearest, lower_bound));
         }

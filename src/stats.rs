@@ -122,8 +122,8 @@ struct Shard {
     fallbacks: AtomicU64,
 }
 
-/// More shards than threads that step one world; two threads that share one may lose counts,
-/// never correctness.
+/// More shards than threads that step one world. Threads take them in turn as they are started, in all
+/// pools of the process; two that share one may lose counts, never correctness.
 const SHARDS: usize = 64;
 
 /// Counters that many threads add to without waiting for each other.

@@ -15,8 +15,12 @@ pub type VertexId = u32;
 pub trait Support {
     /// A point that is extreme in direction `dir` (any length), and its vertex.
     ///
-    /// `start` is where to begin the search, usually the answer of a similar query. It must be
-    /// a valid vertex; a bad choice costs time, never accuracy.
+    /// `start` is where to begin the search, usually the answer of a similar query. A bad choice costs
+    /// time, never accuracy.
+    ///
+    /// # Panics
+    ///
+    /// Perhaps, if `start` is no vertex of the shape: see [`valid_start`](Self::valid_start).
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId);
 
     /// A start for [`support`](Self::support) when no similar query is known.
@@ -50,6 +54,9 @@ pub trait Corners: ExactSizeIterator<Item = DVec3> + DoubleEndedIterator + Clone
 impl<T: ExactSizeIterator<Item = DVec3> + DoubleEndedIterator + Clone> Corners for T {}
 
 /// A convex polytope: a support mapping with faces and edges around it.
+///
+/// Vertices and faces that it is asked about must be its own ([`has_face`](Self::has_face)): with others
+/// its methods may panic. Edges are looked for.
 pub trait Polytope: Support {
     /// The position of a vertex.
     fn vertex(&self, vertex: VertexId) -> DVec3;

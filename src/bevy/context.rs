@@ -155,7 +155,9 @@ impl PhysicsContext {
                 body: self.world.insert_body(built),
                 collider: None,
             };
-            self.entities.insert(entity, handles);
+            // Its body was removed behind our back, and a collider with it.
+            let lost = self.entities.insert(entity, handles);
+            self.removed.extend(lost.and_then(|lost| lost.collider));
         }
     }
 

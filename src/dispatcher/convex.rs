@@ -119,7 +119,11 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         let near = half_space::deepest(pair, &pose, &memory, &mut cost);
         if near.signed_distance > max_distance {
             self.stats.record(Stage::Axis, &cost);
-            cache::write_axis(self.manifold, &half_space::axis(&near), AxisFrame::First);
+            cache::write_axis(
+                self.manifold,
+                &half_space::axis(pair, &near),
+                AxisFrame::First,
+            );
         } else {
             self.stats.record(Stage::Feature, &cost);
             let contacts = manifold::half_space_contacts(

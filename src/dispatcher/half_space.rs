@@ -4,7 +4,7 @@ use super::others::HalfSpace;
 use super::pair::Pair;
 use crate::gjk::SeparatingAxis;
 use crate::pose::RelativePose;
-use crate::query::{Feature, Memory, Proximity};
+use crate::query::{Feature, Memory, Proximity, vertex_of};
 use crate::stats::Cost;
 use crate::support::Support;
 
@@ -44,14 +44,10 @@ pub(super) fn deepest(
 }
 
 /// The plane's normal as a separating axis.
-pub(super) fn axis(near: &Proximity) -> SeparatingAxis {
-    let vertex = match near.features[0] {
-        Feature::Vertex(vertex) => vertex,
-        _ => 0,
-    };
+pub(super) fn axis(pair: &Pair<'_, HalfSpace>, near: &Proximity) -> SeparatingAxis {
     SeparatingAxis {
         axis: near.normal,
         separation: near.signed_distance,
-        ids: [vertex, 0],
+        ids: [vertex_of(pair.hull, near.features[0]), 0],
     }
 }

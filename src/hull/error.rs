@@ -8,7 +8,8 @@ use std::fmt;
 pub enum HullError {
     /// Fewer than four points.
     TooFewPoints,
-    /// More points than 16-bit vertex ids can name.
+    /// More than 32,768 vertices: the faces between them must have 16-bit names. Points inside of the hull
+    /// do not count.
     TooManyPoints,
     /// The point with this index has a NaN or infinite coordinate.
     NotFinite(usize),

@@ -35,8 +35,9 @@
 //!
 //! # Memory
 //! The polyhedron costs about 250 bytes per vertex and the prepared hull about 130
-//! ([`Hull::heap_bytes`]). A plain collider costs the same where our dispatcher answers, and up
-//! to 150 vertices 12 bytes for each, for comparison in the order of its polyhedron.
+//! ([`Hull::heap_bytes`]). A plain collider costs the same where our dispatcher answers, and 12 bytes
+//! per vertex more to compare it with: up to 149 vertices, or whatever their number where the processor
+//! takes no digest of them.
 
 mod bounds;
 mod features;

@@ -14,8 +14,8 @@ use crate::query::{Feature, Proximity, vertex_of};
 use crate::support::Polytope;
 
 /// The contacts of a polytope with the half-space in front of its deepest vertex, the witness of
-/// `proximity`: corners of the face around it, those nearer than `max_distance` first. `pose` is that of
-/// the half-space.
+/// `proximity`: with it corners of the face around it. Of more corners than there is room for those that
+/// span most, first among those nearer than `max_distance`. `pose` is that of the half-space.
 pub fn half_space_contacts(
     shape: &impl Polytope,
     pose: &RelativePose,
