@@ -1,11 +1,13 @@
 //! Which stage answered, and at what cost: counters that tell whether the coherence pays.
 
+use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 /// The stage of the coherent query that gave a pair its answer, cheapest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
+#[non_exhaustive]
 pub enum Stage {
     /// The balls around the shapes are apart, or that around a hull is above a half-space.
     Balls,
@@ -62,6 +64,7 @@ impl Stage {
 
 /// What the queries of one dispatcher have cost so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Stats {
     /// Queries answered by each stage, indexed like [`Stage::ALL`].
     pub answered: [u64; Stage::COUNT],
@@ -133,6 +136,12 @@ pub(crate) struct SharedStats(Arc<[Shard]>);
 impl Default for SharedStats {
     fn default() -> Self {
         Self((0..SHARDS).map(|_| Shard::default()).collect())
+    }
+}
+
+impl fmt::Debug for SharedStats {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.read().fmt(f)
     }
 }
 

@@ -42,7 +42,7 @@ use crate::stats::{SharedStats, Stats};
 ///
 /// Give it to `NarrowPhase::with_query_dispatcher`, or to `set_query_dispatcher` of a world that
 /// runs already. Clones share their statistics.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct IsaGjkDispatcher {
     stats: SharedStats,
     unchanged: Unchanged,

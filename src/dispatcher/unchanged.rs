@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub(super) type Span = NonZeroU64;
 
 /// The span that is under way, if there is one; clones share it.
-#[derive(Clone, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Unchanged(Arc<AtomicU64>);
 
 impl Unchanged {
