@@ -12,10 +12,10 @@ use common::generate::Dice;
 use common::memory::{Manifold, Memory};
 use common::report::Report;
 use common::scene::{Scene, random_scene};
-use isa_gjk::IsaGjkDispatcher;
-use parry3d::math::{Real, Vector};
+use isa_gjk::{HullShape, IsaGjkDispatcher};
+use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact};
-use parry3d::shape::PackedFeatureId;
+use parry3d::shape::{PackedFeatureId, SharedShape};
 
 /// Follows one pair through its frames, both ways round, and compares with cold queries.
 fn follow<'a>(report: &mut Report, name: &str, scenes: impl Iterator<Item = (String, Scene<'a>)>) {
@@ -257,4 +257,58 @@ fn nonsensical_manifold(n1: Vector, n2: Vector, points: u32) -> Manifold {
         })
         .collect();
     manifold
+}
+
+/// Two tips that are the first vertices of their hulls; what was there before had more vertices.
+#[test]
+fn a_vertex_that_a_shape_has_not_is_no_feature() {
+    let triangles = [[0, 2, 1], [0, 3, 2], [0, 1, 3], [1, 2, 3]];
+    let tip = [
+        Vector::ZERO,
+        Vector::new(-0.5, 1.0, -0.5),
+        Vector::new(0.5, 1.0, -0.5),
+        Vector::new(0.0, 1.0, 0.5),
+    ];
+    let hull = |points: [Vector; 4], triangles: &[[u32; 3]]| {
+        let shape = HullShape::from_triangles(points.to_vec(), triangles);
+        SharedShape::new(shape.expect("a tetrahedron"))
+    };
+    let lower = hull(tip.map(|p| p * Vector::new(1.0, -1.0, 1.0)), &triangles);
+    let upper = hull(tip, &triangles.map(|[a, b, c]| [a, c, b]));
+    let ball = SharedShape::ball(0.01);
+    for vertex in [3, 4, 100] {
+        let id = PackedFeatureId::vertex(vertex);
+        for (above, dist) in [(&upper, 0.05), (&ball, 0.04)] {
+            let mut memory = Memory {
+                manifolds: vec![nonsensical_manifold(Vector::Y, -Vector::Y, 1)],
+                ..Memory::default()
+            };
+            let point = &mut memory.manifolds[0].points[0];
+            (point.fid1, point.fid2) = (id, id);
+            let pose = Pose::translation(0.0, 0.05, 0.0);
+            let dispatcher = IsaGjkDispatcher::default();
+            let manifold = memory.update(&dispatcher, &pose, [&lower, above], 0.1);
+            let found = manifold.expect("supported").points[0].dist;
+            assert!((found - dist).abs() < 1e-6, "vertex {vertex}: {found}");
+        }
+    }
+}
+
+/// An axis that is longer than 1 would show a gap that is wider than it is.
+#[test]
+fn an_axis_that_is_no_unit_vector_loses_no_contact() {
+    let cube = &hulls()["box_unit"].shape;
+    let width = cube.compute_local_aabb().extents().x;
+    let pose = Pose::translation(1.9997 * width, 0.0, 0.0);
+    for length in [1.0004, 1.00001, 0.9996] {
+        let mut memory = Memory {
+            manifolds: vec![nonsensical_manifold(Vector::X * length, Vector::ZERO, 0)],
+            ..Memory::default()
+        };
+        let dispatcher = IsaGjkDispatcher::default();
+        let manifold = memory.update(&dispatcher, &pose, [cube, cube], width);
+        let deepest = manifold.and_then(|m| m.find_deepest_contact());
+        let dist = deepest.expect("within the prediction").dist;
+        assert!((dist - 0.9997 * width).abs() < 1e-5 * width, "{dist}");
+    }
 }

@@ -318,6 +318,36 @@ fn pebbles_needles_and_cliffs_are_built() {
     }
 }
 
+/// Turned plates and bars, whose corners the builder takes for points of one plane. It used to leave some
+/// out.
+#[test]
+fn thin_clouds_keep_their_corners() {
+    let mut dice = Dice::new(8);
+    let corner = |i: u32| DVec3::from([0, 1, 2].map(|k| f64::from(i >> k & 1) - 0.5));
+    for extents in [
+        [1.0, 1e-3, 1.0],
+        [1.0, 1e-3, 0.1],
+        [1.0, 1e-4, 1.0],
+        [1e-3, 1.0, 1e-3],
+    ] {
+        for _ in 0..100 {
+            let turn = dice.rotation();
+            let place = |p: DVec3| (turn * (p * DVec3::from(extents))).as_vec3();
+            let corners: Vec<Vec3> = (0..8).map(corner).map(place).collect();
+            let hull = Hull::from_points(&corners).expect("a solid");
+            assert_eq!(hull.points().len(), 8, "{extents:?}: {corners:?}");
+            let cloud: Vec<Vec3> = (0..30).map(|_| place(dice.direction())).collect();
+            let hull = Hull::from_points(&cloud).expect("a solid");
+            for face in 0..hull.face_count() as u32 {
+                let height = |p: &Vec3| hull.face_normal(face).dot(p.as_dvec3());
+                let highest = cloud.iter().map(height).fold(f64::MIN, f64::max);
+                let beyond = highest - hull.face_offset(face);
+                assert!(beyond < 1e-5, "{extents:?}: {beyond} outside of {cloud:?}");
+            }
+        }
+    }
+}
+
 #[test]
 fn a_needle_of_boxes_edges_is_built() {
     for half in [Vec3::new(64.0, 0.5, 0.5), Vec3::new(5.0e-4, 4.0e-6, 4.0e-6)] {

@@ -6,7 +6,7 @@
 
 mod common;
 
-use common::cases::Hull;
+use common::cases::{Hull, hulls};
 use common::generate::{Dice, prepared};
 use common::oracle::{Solid, signed_distance};
 use common::pose::ExactPose;
@@ -330,6 +330,70 @@ fn rounded_borders_are_met_first() {
         "{hit:?}"
     );
     assert!((hit.witness2.z + 0.25).abs() < 1.0e-5, "{hit:?}");
+}
+
+/// Where faces overlap the points are one over the other, and on both shapes.
+#[test]
+fn witnesses_of_deep_overlaps_face_each_other() {
+    let mut dice = Dice::new(9);
+    let mut report = Report::new("witnesses of overlapping faces");
+    for name in ["box_unit", "prism16", "prism64_coin"] {
+        let Hull { solid, shape } = &hulls()[name];
+        let extents = shape.compute_local_aabb().extents().as_dvec3();
+        for _ in 0..300 {
+            let turn = DVec3::AXES[dice.count(0, 2)] * dice.range(0.0, 6.0);
+            let aside = [(); 3].map(|()| dice.range(-0.6, 0.6));
+            let pose = ExactPose {
+                rotation: DQuat::from_scaled_axis(turn),
+                translation: DVec3::from(aside) * extents,
+            };
+            let pose = pose.rounded();
+            let contact = dispatcher().contact(&pose.to_f32(), &**shape, &**shape, 0.0);
+            let Some(contact) = contact.expect("supported") else {
+                continue;
+            };
+            let on_2 = pose.apply(contact.point2.as_dvec3());
+            let between = on_2 - contact.point1.as_dvec3();
+            let along = contact.normal1.as_dvec3() * f64::from(contact.dist);
+            let size = solid.diameter();
+            let mut finding = Finding::default();
+            finding.at_most("aside", (between - along).length() / size, TOLERANCE);
+            for point in [contact.point1, contact.point2] {
+                let off = solid.outside(point.as_dvec3()).abs() / size;
+                finding.at_most("off the surface", off, TOLERANCE);
+            }
+            report.add(name, "", finding);
+        }
+    }
+    report.conclude();
+}
+
+/// A vertex beside the rim of a box without thickness, in its plane.
+#[test]
+fn a_flat_box_ends_where_its_rim_is() {
+    let corners = [
+        Vector::ZERO,
+        Vector::new(1.0, -0.1, -0.1),
+        Vector::new(1.0, 0.1, -0.1),
+        Vector::new(1.0, 0.0, 0.2),
+    ];
+    let tip = SharedShape::convex_hull(&corners).expect("a solid");
+    let mut dice = Dice::new(10);
+    for _ in 0..2000 {
+        let [x, z] = [(); 2].map(|()| dice.range(0.1, 2.0) as Real);
+        let plate = SharedShape::cuboid(x, 0.0, z);
+        let [beside, beyond] = [(); 2].map(|()| dice.range(0.0, 0.3) as Real);
+        let pose = Pose::translation(x + beside, 0.0, z + beyond);
+        let distance = dispatcher().distance(&pose, &*plate, &*tip);
+        let distance = distance.expect("supported").distance;
+        let reach = distance + dice.range(0.01, 0.5) as Real;
+        let contact = dispatcher().contact(&pose, &*plate, &*tip, reach);
+        let contact = contact.expect("supported").expect("near").dist;
+        assert!(
+            (contact - distance).abs() < 1e-6,
+            "{contact}, not {distance}"
+        );
+    }
 }
 
 /// The hull inside of a rounded one may be at the same address, and has no border.

@@ -46,12 +46,17 @@ impl Curved for ParryCone {
     }
 }
 
+/// A box without thickness is this thick in its largest extents, a hundredth of what answers may be off:
+/// sides of faces that have a length tell what is beyond them.
+const FLATTEST: f64 = 1e-7;
+
 /// `None` for a box that is a segment or a point: it has no faces with a plane.
 #[inline]
 pub(super) fn cuboid(cuboid: &Cuboid) -> Option<CuboidPolytope> {
     let half_extents = cuboid.half_extents.as_dvec3();
     let thin = half_extents.cmple(DVec3::splat(THINNEST * half_extents.max_element()));
-    (thin.bitmask().count_ones() < 2).then(|| CuboidPolytope::new(half_extents))
+    let thickest = half_extents.max(DVec3::splat(FLATTEST * half_extents.max_element()));
+    (thin.bitmask().count_ones() < 2).then(|| CuboidPolytope::new(thickest))
 }
 
 /// A length that tolerances can be relative to.

@@ -12,6 +12,7 @@ use super::half_space;
 use super::others::HalfSpace;
 use super::pair::{self, Pair, PairVisitor, Scratch};
 use crate::gjk::{self, Closest, Outcome};
+use crate::manifold::with_witnesses_on_faces;
 use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Proximity, Query};
 use crate::simplex::Preferred;
@@ -250,8 +251,9 @@ impl PairVisitor for ContactQuery<'_> {
         scratch: &mut Scratch,
     ) -> Option<Self::Answer> {
         let pose = valid_pose(pair, self.pos12)?;
+        let cso = pair.cso(&pose);
         let (answer, _) = Query {
-            cso: &pair.cso(&pose),
+            cso: &cso,
             max_distance: pair.between_cores(self.prediction),
             shells: None,
             scratch: &mut scratch.epa,
@@ -261,6 +263,7 @@ impl PairVisitor for ContactQuery<'_> {
         Some(match answer {
             Answer::Apart(_) => None,
             Answer::Near(near) => {
+                let near = with_witnesses_on_faces(&cso, &near, &mut scratch.clip);
                 let seen = Seen::new(pair, &pose);
                 Some(Near::of_proximity(&near, &seen).contact())
             }

@@ -112,6 +112,12 @@ impl Hull {
     }
 }
 
+impl AsRef<Self> for Hull {
+    fn as_ref(&self) -> &Self {
+        self
+    }
+}
+
 pub(super) fn require_finite(points: &[Vec3]) -> Result<(), HullError> {
     match points.iter().position(|p| !p.is_finite()) {
         Some(i) => Err(HullError::NotFinite(i)),

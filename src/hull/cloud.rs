@@ -4,16 +4,17 @@ use std::collections::HashMap;
 
 use glam::{DMat3, DVec3, Vec3};
 
-use super::HullError;
 use super::build::require_finite;
-use crate::tolerance::THINNEST;
+use super::{Hull, HullError};
+use crate::support::{FaceId, Polytope, Support};
+use crate::tolerance::{LEFT_OUT, THICK, THINNEST};
 
 /// Gives `build` the vertices and triangles around a point cloud.
 ///
 /// The builder decides in f32 what is flat, and finds no convex surface around needles and discs
-/// that are too thin for that. Such a cloud is made round first: an affine map changes nothing of
-/// a hull but its coordinates.
-pub(crate) fn surround<T>(
+/// that are too thin for that, or one that leaves corners out. Such a cloud is made round first: an
+/// affine map changes nothing of a hull but its coordinates.
+pub(crate) fn surround<T: AsRef<Hull>>(
     points: &[Vec3],
     build: impl Fn(Vec<Vec3>, &[[u32; 3]]) -> Result<T, HullError>,
 ) -> Result<T, HullError> {
@@ -21,14 +22,21 @@ pub(crate) fn surround<T>(
         return Err(HullError::TooFewPoints);
     }
     require_finite(points)?;
+    let around_all = |vertices, triangles: &[[u32; 3]]| {
+        let built = build(vertices, triangles)?;
+        if leaves_out(built.as_ref(), points) {
+            return Err(HullError::BuilderFailed);
+        }
+        Ok(built)
+    };
     let as_it_is = || {
         let (vertices, triangles) = surface(points)?;
-        build(vertices, &triangles)
+        around_all(vertices, &triangles)
     };
     let made_round = || {
         let rounded = round(points)?;
         let (vertices, triangles) = surface(&rounded).ok()?;
-        build(originals(points, &rounded, &vertices), &triangles).ok()
+        around_all(originals(points, &rounded, &vertices), &triangles).ok()
     };
     as_it_is().or_else(|error| made_round().ok_or(error))
 }
@@ -41,6 +49,17 @@ fn surface(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
         return Err(HullError::Flat);
     }
     Ok((vertices, triangles))
+}
+
+/// Whether one of the points is outside of a hull that is thin: of others the builder leaves none out.
+fn leaves_out(hull: &Hull, points: &[Vec3]) -> bool {
+    let faces = || 0..hull.face_count() as FaceId;
+    let height = |face, p: DVec3| hull.face_normal(face).dot(p) - hull.face_offset(face);
+    let thick = THICK * hull.radius();
+    let is_thin = faces().any(|face| -height(face, hull.center()) < thick);
+    let is_outside =
+        |p: &Vec3| faces().any(|face| height(face, p.as_dvec3()) > LEFT_OUT * hull.radius());
+    is_thin && points.iter().any(is_outside)
 }
 
 /// An affine image of the points with unit covariance; `None` if they span no volume.

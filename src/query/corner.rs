@@ -50,10 +50,10 @@ pub(super) fn certify<A: Polytope, B: Polytope>(
     }
 }
 
-/// The ends of an edge; a vertex twice.
+/// The ends of an edge; a vertex twice. What the shape has not, a memory of another one, has none.
 fn ends(shape: &impl Polytope, feature: Feature) -> Option<[VertexId; 2]> {
     match feature {
-        Feature::Vertex(vertex) => Some([shape.valid_start(vertex); 2]),
+        Feature::Vertex(vertex) => (shape.valid_start(vertex) == vertex).then_some([vertex; 2]),
         Feature::Edge(edge) => shape.edge(edge),
         Feature::Face(_) => None,
     }

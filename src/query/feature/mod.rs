@@ -280,7 +280,8 @@ fn parallelogram(
 }
 
 /// The witness points of a penetration depth, from its features where these determine them: a
-/// facet may be larger than the triangle that was found of it.
+/// facet may be larger than the triangle that was found of it. Else they are one over the other, but
+/// perhaps beside a face.
 pub(super) fn witnesses<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     features: [Feature; 2],
@@ -297,9 +298,9 @@ pub(super) fn witnesses<A: Polytope, B: Polytope>(
             [on_2 + through, on_2]
         }
         [Feature::Edge(e1), Feature::Edge(e2)] => {
-            edge_witnesses(cso, e1, e2).unwrap_or([depth.on_1, depth.on_2])
+            edge_witnesses(cso, e1, e2).unwrap_or([depth.on_1, depth.on_1 - through])
         }
-        _ => [depth.on_1, depth.on_2],
+        _ => [depth.on_1, depth.on_1 - through],
     }
 }
 
