@@ -163,25 +163,6 @@ impl<'a> AnyHull<'a> {
     }
 }
 
-impl AnyHull<'_> {
-    /// Whether both are one polyhedron, perhaps with different borders.
-    #[inline]
-    fn is_polyhedron_of(self, other: AnyHull<'_>) -> bool {
-        match (self, other) {
-            (Self::Plain(first, _), AnyHull::Plain(second, _)) => std::ptr::eq(first, second),
-            _ => false,
-        }
-    }
-
-    #[inline]
-    fn border(self) -> f64 {
-        match self {
-            Self::Plain(_, border) => border.into(),
-            Self::Prepared(_) => 0.0,
-        }
-    }
-}
-
 /// Whether a shape is a hull to us, so that pairs with it are ours to answer.
 pub(super) fn is_hull(shape: &dyn Shape) -> bool {
     AnyHull::of(shape).is_some()
@@ -199,6 +180,22 @@ impl<'a> Side<'a, EachProved> {
     #[inline]
     pub fn alone(shape: &'a dyn Shape) -> Self {
         Self::new(shape, EachProved)
+    }
+}
+
+impl<F> Side<'_, F> {
+    /// Whether both are one hull. A rounded one may have the address of the one within it.
+    #[inline(always)]
+    fn is_same<G>(&self, other: &Side<'_, G>) -> bool {
+        std::ptr::addr_eq(self.shape, other.shape) && self.border() == other.border()
+    }
+
+    #[inline]
+    fn border(&self) -> Real {
+        match self.hull {
+            Some(AnyHull::Plain(_, border)) => border,
+            _ => 0.0,
+        }
     }
 }
 
@@ -238,13 +235,16 @@ impl<'a, F: Find<'a>> Side<'a, F> {
     /// The hull, if the shape is one.
     #[inline(always)]
     fn prepare(&mut self, table: &mut HullTable) -> Option<Prepared<'a>> {
-        let hull = self.hull?;
-        let place = match hull {
-            AnyHull::Plain(polyhedron, _) => Place::Found(self.find.find(table, polyhedron)?),
-            AnyHull::Prepared(shape) => Place::Own(shape.hull()),
-        };
-        let border = hull.border();
-        Some(Prepared { place, border })
+        Some(match self.hull? {
+            AnyHull::Plain(polyhedron, border) => Prepared {
+                place: Place::Found(self.find.find(table, polyhedron)?),
+                border: border.into(),
+            },
+            AnyHull::Prepared(shape) => Prepared {
+                place: Place::Own(shape.hull()),
+                border: 0.0,
+            },
+        })
     }
 }
 
@@ -267,15 +267,14 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
     span: Option<Span>,
     mut visitor: V,
 ) -> Option<V::Answer> {
-    match [side_1.hull, side_2.hull] {
-        [Some(hull_1), Some(hull_2)] => {
+    match [side_1.is_hull(), side_2.is_hull()] {
+        [true, true] => {
             WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
                 hulls.begin(span);
                 let first = side_1.prepare(hulls)?;
                 // Two colliders with one shape, which many worlds are full of, need one proof.
-                let second = if hull_1.is_polyhedron_of(hull_2) {
-                    let border = hull_2.border();
-                    Prepared { border, ..first }
+                let second = if side_1.is_same(&side_2) {
+                    first
                 } else {
                     side_2.prepare(hulls)?
                 };
@@ -288,9 +287,9 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
                 visitor.visit(&pair, scratch)
             })
         }
-        [Some(_), None] => Besides::new(&mut side_1, span, false).visit(side_2.shape, &mut visitor),
-        [None, Some(_)] => Besides::new(&mut side_2, span, true).visit(side_1.shape, &mut visitor),
-        [None, None] => None,
+        [true, false] => Besides::new(&mut side_1, span, false).visit(side_2.shape, &mut visitor),
+        [false, true] => Besides::new(&mut side_2, span, true).visit(side_1.shape, &mut visitor),
+        [false, false] => None,
     }
 }
 
