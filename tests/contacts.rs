@@ -3,7 +3,7 @@
 
 use std::f32::consts::TAU;
 
-use isa_gjk::IsaGjkDispatcher;
+use isa_gjk::{HullShape, IsaGjkDispatcher};
 use oorandom::Rand32;
 use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, TrackedContact};
@@ -85,6 +85,37 @@ fn a_dented_side_is_one_face_with_its_true_distances() {
             let nearest = hull.points().iter().map(|p| p.distance(point.local_p2));
             let away = nearest.fold(Real::INFINITY, Real::min);
             assert!(away < 2e-5, "{sides} sides: {away} from a corner");
+        }
+    }
+}
+
+/// The facets of a flat lens are nearly coplanar, and some of those around its rim are seen edge-on there.
+#[test]
+fn the_rim_of_a_lens_touches_in_points_on_it() {
+    let wall = SharedShape::cuboid(1.0, 3.0, 3.0);
+    let mut dice = Rand32::new(5);
+    let mut within = |most: Real| most * (2.0 * dice.rand_float() - 1.0);
+    for corners in (8..68).cycle().take(2000) {
+        let mut points: Vec<Vector> = (0..corners)
+            .map(|i| {
+                let (sin, cos) = (TAU * i as f32 / corners as f32).sin_cos();
+                Vector::new(cos, within(2e-3), sin)
+            })
+            .collect();
+        let height = 0.05 + within(0.02);
+        points.extend([Vector::Y * height, Vector::Y * -height]);
+        let lens = SharedShape::new(HullShape::from_points(&points).expect("a lens"));
+        let [tilt_x, turn, tilt_z] = [0.05, 3.0, 0.05].map(&mut within);
+        let turn = Rotation::from_scaled_axis(Vector::new(tilt_x, 0.0, tilt_z))
+            * Rotation::from_scaled_axis(Vector::Y * turn);
+        let depth = 0.01 + within(0.01);
+        let mut manifolds = Vec::new();
+        let pose = Pose::from_parts(Vector::X * (2.0 - depth), turn);
+        update_pair(&mut manifolds, [&wall, &lens], pose, 0.05);
+        for point in &manifolds[0].points {
+            let off = lens.distance_to_local_point(point.local_p2, false).abs();
+            let off_wall = (point.local_p1.x - 1.0).abs();
+            assert!(off.max(off_wall) < 1e-5, "{off} and {off_wall}: {point:?}");
         }
     }
 }

@@ -37,10 +37,19 @@ impl<'s> Surface<'s> {
         let plane = frame.plane(shape, face, sign)?;
         let mut polygon = face;
         if let Some((outline, faces)) = shape.cap(face) {
-            polygon = outline;
-            let others = faces.iter().map(|&f| FaceId::from(f));
-            let others = others.filter(|&other| other != face);
-            more.extend(others.filter_map(|other| frame.plane(shape, other, sign)));
+            let others = faces.iter().map(|&other| FaceId::from(other));
+            // Slivers have no plane, and what they cover others do.
+            let mut others =
+                others.filter(|&other| other != face && shape.face_normal(other) != DVec3::ZERO);
+            // A cap that turns edge-on has corners at which no plane tells its height.
+            let seen = others.try_for_each(|other| {
+                more.push(frame.plane(shape, other, sign)?);
+                Some(())
+            });
+            match seen {
+                Some(()) => polygon = outline,
+                None => more.clear(),
+            }
         }
         Some(Self {
             polygon,
