@@ -35,7 +35,7 @@ pub const FOLD: f64 = 6e-7;
 pub const THINNEST: f64 = 1e-6;
 
 /// A hull whose centre is deeper than this share of its radius beneath all faces is thick enough for the
-/// f32 decisions of parry's hull builder: of thousands of clouds down to half of it none lost a corner.
+/// f32 decisions of parry's hull builder: of thousands of clouds down to a seventh of it none lost a corner.
 pub const THICK: f64 = 0.05;
 
 /// A point may be outside of the hull that was built around it by this share of the radius: half of what
