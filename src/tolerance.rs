@@ -84,10 +84,6 @@ pub const COPLANAR: f64 = 1e-14;
 /// of Newton's method then normalises it to f64 rounding.
 pub const NEARLY_UNIT: f64 = 1e-6;
 
-/// A normal in a manifold whose squared length is this near to 1 is one of ours, or another f32 unit
-/// vector. Separations along it are that wrong at most, whatever they are relative to.
-pub const UNIT_NORMAL: f64 = 1e-6;
-
 /// Edges whose directions span less than this sine squared do not define a contact normal.
 pub const PARALLEL_EDGES: f64 = 1e-8;
 

@@ -23,7 +23,7 @@ use crate::gjk::SeparatingAxis;
 use crate::pose::RelativePose;
 use crate::query::{self, Feature, Memory, Proximity};
 use crate::support::{Cso, Polytope, Support, VertexId};
-use crate::tolerance::UNIT_NORMAL;
+use crate::tolerance::NEARLY_UNIT;
 
 /// Of which shape's frame a pair keeps its separating axis.
 #[derive(Clone, Copy)]
@@ -158,7 +158,7 @@ pub(super) fn ordered<T>([a, b]: [T; 2], swapped: bool) -> [T; 2] {
 fn unit(v: Vec3) -> Option<DVec3> {
     let v = v.as_dvec3();
     // Also false for NaN.
-    ((v.length_squared() - 1.0).abs() < UNIT_NORMAL).then_some(v)
+    ((v.length_squared() - 1.0).abs() < NEARLY_UNIT).then_some(v)
 }
 
 const KIND: u32 = 0b11 << 30;

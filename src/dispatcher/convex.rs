@@ -53,7 +53,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         let max_distance = pair.between_cores(self.prediction);
         let frame = AxisFrame::of(&cso);
         let mut cost = Cost::default();
-        // Two thirds of the pairs that are apart end here: before anything else is done for them.
+        // Half of the pairs that are apart, or more, end here: before anything else is done for them.
         if cso.has_balls_apart(max_distance) {
             self.stats.record(Stage::Balls, &cost);
             cache::forget(self.manifold);

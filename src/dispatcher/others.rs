@@ -54,9 +54,10 @@ const FLATTEST: f64 = 1e-7;
 #[inline]
 pub(super) fn cuboid(cuboid: &Cuboid) -> Option<CuboidPolytope> {
     let half_extents = cuboid.half_extents.as_dvec3();
-    let thin = half_extents.cmple(DVec3::splat(THINNEST * half_extents.max_element()));
-    let thickest = half_extents.max(DVec3::splat(FLATTEST * half_extents.max_element()));
-    (thin.bitmask().count_ones() < 2).then(|| CuboidPolytope::new(thickest))
+    let longest = DVec3::splat(half_extents.max_element());
+    let thin = half_extents.cmple(longest * THINNEST);
+    let with_thickness = half_extents.max(longest * FLATTEST);
+    (thin.bitmask().count_ones() < 2).then(|| CuboidPolytope::new(with_thickness))
 }
 
 /// A length that tolerances can be relative to.
