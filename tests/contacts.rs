@@ -1,13 +1,19 @@
 //! What a manifold keeps: contacts spread over the whole flat side, though it is made of many
 //! facets, at their true distances; and the solver's data when contacts change.
 
+#[path = "common/scanned.rs"]
+mod scanned;
+
 use std::f32::consts::TAU;
 
+use glam::{DQuat, DVec3, EulerRot};
 use isa_gjk::{HullShape, IsaGjkDispatcher};
 use oorandom::Rand32;
 use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, TrackedContact};
 use parry3d::shape::{ConvexPolyhedron, PackedFeatureId, SharedShape};
+
+use scanned::noisy_box;
 
 type Manifold = ContactManifold<(), u32>;
 
@@ -52,7 +58,7 @@ fn standing(tilt: Vector) -> Pose {
 
 /// The area that four points span, seen from above: half the product of the diagonals.
 fn area(points: &[TrackedContact<u32>]) -> Real {
-    let at = |i: usize| points[i].local_p2;
+    let at = |i: usize| points[i].local_p1;
     let product = |a: usize, b: usize, c: usize, d: usize| {
         let cross = (at(b) - at(a)).cross(at(d) - at(c));
         0.5 * cross.y.abs()
@@ -116,6 +122,93 @@ fn the_rim_of_a_lens_touches_in_points_on_it() {
             let off = lens.distance_to_local_point(point.local_p2, false).abs();
             let off_wall = (point.local_p1.x - 1.0).abs();
             assert!(off.max(off_wall) < 1e-5, "{off} and {off_wall}: {point:?}");
+        }
+    }
+}
+
+/// A slab of half extents (1, 0.05, 1), each side of so many cells squared. It was turned before it was
+/// rounded, so its sides are flat only up to rounding. With it, the rotation back.
+fn turned_slab(cells: u32, euler: [f64; 2]) -> (SharedShape, Rotation) {
+    let turn = DQuat::from_euler(EulerRot::XYZ, euler[0], euler[1], 0.0);
+    let corner = |x: u32, y: f64, z: u32| {
+        let along = |i: u32| 2.0 * f64::from(i) / f64::from(cells) - 1.0;
+        (turn * DVec3::new(along(x), y, along(z))).as_vec3()
+    };
+    let across = cells + 1;
+    let below = across * across;
+    let grid = (0..below).map(|i| [i % across, i / across]);
+    let sides = [-0.05, 0.05].map(|y| grid.clone().map(move |[x, z]| corner(x, y, z)));
+    let points: Vec<Vector> = sides.into_iter().flatten().collect();
+    let mut triangles = Vec::new();
+    for [x, z] in grid.filter(|&[x, z]| x < cells && z < cells) {
+        let v = x + z * across;
+        let [a, b, c, d] = [v, v + 1, v + across, v + across + 1];
+        let [above_a, above_b, above_c, above_d] = [a, b, c, d].map(|v| v + below);
+        triangles.extend([[a, b, c], [b, d, c]]);
+        triangles.extend([[above_a, above_c, above_b], [above_b, above_c, above_d]]);
+    }
+    for i in 0..cells {
+        let last = cells * across;
+        let rims = [
+            [i + 1, i],
+            [last + i, last + i + 1],
+            [i * across, (i + 1) * across],
+            [(i + 2) * across - 1, (i + 1) * across - 1],
+        ];
+        for [a, b] in rims {
+            triangles.extend([[a, b, a + below], [b, b + below, a + below]]);
+        }
+    }
+    let hull = HullShape::from_triangles(points, &triangles).expect("a slab");
+    let [x, y, z, w] = turn.inverse().as_quat().to_array();
+    (SharedShape::new(hull), Rotation::from_xyzw(x, y, z, w))
+}
+
+/// By rounding, the plane of one small cell leaves the side at its far end. So the side was not joined
+/// to one face, and met the ground with a single triangle.
+#[test]
+fn a_side_of_many_cells_is_met_as_a_whole() {
+    for cells in [7, 10, 11, 15, 19] {
+        for (i, j) in (0..20).flat_map(|i| [7, 10, 14, 18].map(|j| (i, j))) {
+            let euler = [0.05 * f64::from(i), 0.05 * f64::from(j)];
+            let (slab, back) = turned_slab(cells, euler);
+            let mut manifolds = Vec::new();
+            let pose = Pose::from_parts(Vector::Y * 0.049, back);
+            update(&mut manifolds, &slab, pose);
+            let points = &manifolds[0].points;
+            assert_eq!(points.len(), 4, "{cells} cells, {euler:?}");
+            let area = area(points);
+            assert!(area > 2.9, "{cells} cells, {euler:?}: {area} m²");
+        }
+    }
+}
+
+/// The walls beside it are edge-on, and reach under its outline by rounding. For one such wall the
+/// side was reduced to a single facet.
+#[test]
+fn a_noisy_side_is_met_as_a_whole_in_points_on_it() {
+    let mut dice = Rand32::new(3);
+    for i in 0..400 {
+        let (count, noise) = ([10, 30, 100][i % 3], [1e-5, 1e-4, 1e-3][i / 3 % 3]);
+        let points = noisy_box(count, noise, &mut dice);
+        let shape = SharedShape::new(HullShape::from_points(&points).expect("a box"));
+        let mut within = |most: Real| most * (2.0 * dice.rand_float() - 1.0);
+        let tilt = Rotation::from_rotation_x(within(0.01));
+        let turn = tilt * Rotation::from_rotation_y(within(3.0));
+        // On the ground as a whole, and in part beyond its edge.
+        for x in [0.0, 9.8] {
+            let mut manifolds = Vec::new();
+            let pose = Pose::from_parts(Vector::new(x + within(0.2), 0.199, 0.0), turn);
+            update(&mut manifolds, &shape, pose);
+            let points = &manifolds[0].points;
+            let least = if x == 0.0 { 0.5 } else { 0.1 };
+            assert!(area(points) > least, "box {i} at {x}: {} m²", area(points));
+            for point in points {
+                let off = shape.distance_to_local_point(point.local_p2, false).abs();
+                // Between corners at different heights the outline passes the rim a little.
+                let most = 2e-6 + 0.05 * noise;
+                assert!(off < most, "box {i} at {x}: {off} m off");
+            }
         }
     }
 }

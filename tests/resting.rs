@@ -4,6 +4,8 @@
 #[allow(dead_code)]
 #[path = "../examples/compare/quality.rs"]
 mod quality;
+#[path = "common/scanned.rs"]
+mod scanned;
 #[allow(dead_code)]
 #[path = "../examples/compare/scenes/mod.rs"]
 mod scenes;
@@ -12,8 +14,10 @@ use std::collections::HashSet;
 use std::f32::consts::TAU;
 
 use isa_gjk::IsaGjkDispatcher;
+use oorandom::Rand32;
 use quality::{Observer, Quality};
 use rapier3d::prelude::*;
+use scanned::noisy_box;
 use scenes::hulls::{cuboid, prism};
 use scenes::{HullSource, Scene, SceneParams, World};
 
@@ -296,4 +300,24 @@ fn a_faceted_sphere_rolls_straight_on() {
     assert!(aside <= 1.2 * default[0], "{aside} m aside");
     assert!(hop <= 1.2 * default[1], "{hop} m high");
     assert!((way - default[2]).abs() < 0.05, "{way} m far");
+}
+
+/// They stood on one facet of that side, tipped over its edges, and sank in.
+#[test]
+fn boxes_with_a_noisy_side_come_to_rest_on_it() {
+    let mut dice = Rand32::new(1);
+    for i in 0..72 {
+        let (count, noise) = ([10, 30, 100][i % 3], [1e-4, 1e-3, 3e-3][i / 3 % 3]);
+        let points = noisy_box(count, noise, &mut dice);
+        let shape = SharedShape::convex_hull(&points).expect("a solid");
+        let ground = cuboid(Vector::new(3.0, 0.5, 3.0)).expect("a solid");
+        let ground = ColliderBuilder::new(ground).translation(Vector::Y * -0.5);
+        let turn = Rotation::from_scaled_axis(Vector::new(0.01, 0.4, 0.02));
+        let start = Pose::from_parts(Vector::new(0.02, 0.23, 0.03), turn);
+        let body = RigidBodyBuilder::dynamic().pose(start);
+        let way = Track::new(narrow_phase(true), ground, body, shape, 0.5).run(240);
+        let [sunk, drift] = [0.2 - way[239].y, way[239].distance(way[90])];
+        assert!(sunk < noise + 1e-3, "box {i}: sunk by {sunk} m");
+        assert!(drift < 1e-3, "box {i}: went {drift} m");
+    }
 }

@@ -325,28 +325,36 @@ impl Regions {
             first: vec![0],
             of: vec![FREE; triangles.len()],
         };
+        let (vectors, areas) = (&vectors, &areas);
+        // Whether a triangle lies in the plane of some others.
+        let joins = |some: &[u32]| {
+            let (normal, center) = plane(points, triangles, vectors, some);
+            move |t: usize| {
+                // The direction of a sliver is rounding only; its neighbours decide.
+                let turned = normal.dot(vectors[t]) < FACE_ANGLE_COS * areas[t];
+                let sliver = || areas[t] <= SLIVER * radius * longest_side(points, triangles[t]);
+                let height = |v: u32| normal.dot(points[v as usize] - center);
+                let flat = |&v: &u32| height(v).abs() <= FACE_FLATNESS * radius;
+                (!turned || sliver()) && triangles[t].iter().all(flat)
+            }
+        };
         for (_, seed) in seeds {
             if regions.of[seed as usize] != FREE {
                 continue;
             }
-            let normal = vectors[seed as usize].normalize_or_zero();
-            let height = |v: u32| normal.dot(points[v as usize]);
-            let level = height(triangles[seed as usize][0]);
-            let joins = |t: usize| {
-                // The direction of a sliver is rounding only; its neighbours decide.
-                let turned = normal.dot(vectors[t]) < FACE_ANGLE_COS * areas[t];
-                let sliver = || areas[t] <= SLIVER * radius * longest_side(points, triangles[t]);
-                let flat = |&v: &u32| (height(v) - level).abs() <= FACE_FLATNESS * radius;
-                (!turned || sliver()) && triangles[t].iter().all(flat)
-            };
-            regions.add(surface, seed, joins);
+            regions.add(surface, seed, joins(&[seed]));
+            // The corners of a small triangle are rounded, so its plane leaves a large side at the
+            // far end. The plane of all triangles that it found there does not.
+            if let Some(found) = regions.take_back() {
+                regions.add(surface, seed, joins(&found));
+            }
         }
         regions
     }
 
     /// A new region: the triangles that hang together with `seed` and join it.
     fn add(&mut self, surface: &Surface<'_>, seed: u32, joins: impl Fn(usize) -> bool) {
-        let region = (self.first.len() - 1) as u32;
+        let region = self.len() as u32;
         let mut at = self.triangles.len();
         self.of[seed as usize] = region;
         self.triangles.push(seed);
@@ -361,6 +369,21 @@ impl Regions {
             at += 1;
         }
         self.first.push(self.triangles.len());
+    }
+
+    /// Takes the last region apart again, if it is more than its seed.
+    fn take_back(&mut self) -> Option<Vec<u32>> {
+        let region = self.len() - 1;
+        let start = self.first[region];
+        if self.triangles.len() - start == 1 {
+            return None;
+        }
+        self.first.pop();
+        let found = self.triangles.split_off(start);
+        for &t in &found {
+            self.of[t as usize] = FREE;
+        }
+        Some(found)
     }
 
     fn len(&self) -> usize {
@@ -395,6 +418,27 @@ impl Regions {
             }
         }
     }
+}
+
+/// The plane of some triangles with these area vectors: its normal, and their centroid.
+fn plane(
+    points: &[DVec3],
+    triangles: &[[u32; 3]],
+    vectors: &[DVec3],
+    some: &[u32],
+) -> (DVec3, DVec3) {
+    let (mut normal, mut moment, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+    for &t in some {
+        let [a, b, c] = triangles[t as usize].map(|v| points[v as usize]);
+        let weight = vectors[t as usize].length();
+        normal += vectors[t as usize];
+        moment += (a + b + c) * (weight / 3.0);
+        area += weight;
+    }
+    (
+        normal.normalize_or_zero(),
+        moment / area.max(f64::MIN_POSITIVE),
+    )
 }
 
 /// Whether no corner is a dent, beyond rounding.

@@ -143,4 +143,10 @@ impl FacePlane {
     pub fn height(&self, at: Vec2) -> f32 {
         at.x * self.slope.x + at.y * self.slope.y + self.base
     }
+
+    /// The tangent squared of its angle to the contact plane.
+    #[inline(always)]
+    pub fn slope_squared(&self) -> f32 {
+        self.slope.length_squared()
+    }
 }
