@@ -7,8 +7,8 @@ use parry3d::shape::SharedShape;
 
 pub const VERTICES: [usize; 5] = [10, 32, 100, 300, 1000];
 pub const FRAMES: usize = 240;
-/// Rapier's prediction distance.
-pub const PREDICTION: f32 = 0.002;
+/// Rapier's prediction distance where a unit is a metre.
+pub const PREDICTION: f32 = 0.02;
 
 /// Mean gap of the two hulls, whose radius is 1.
 pub const GAPS: [(&str, f32); 4] = [

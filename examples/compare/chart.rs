@@ -8,6 +8,7 @@ use plotters::prelude::*;
 
 use crate::measure::{BLOCK, Run, Side};
 use crate::quality::quantile;
+use crate::rest::{self, Rest};
 use crate::sweep::{Row, Sweep};
 
 const SIZE: (u32, u32) = (800, 440);
@@ -80,6 +81,58 @@ pub fn frames(path: &Path, title: &str, runs: &[Run]) -> Result<(), Box<dyn Erro
     chart
         .configure_series_labels()
         .position(SeriesLabelPosition::UpperLeft)
+        .background_style(WHITE)
+        .border_style(GRID)
+        .legend_area_size(KEY + 6)
+        .label_font(FONT)
+        .draw()?;
+    Ok(area.present()?)
+}
+
+/// Draws how many bodies are awake in every frame, a line for each seed.
+pub fn awake(path: &Path, rest: &Rest) -> Result<(), Box<dyn Error>> {
+    type Worlds = fn(&rest::Run) -> &rest::Side;
+    let lines: [(_, _, Worlds); 2] = [
+        ("rapier's default", DEFAULT, |run| &run.default),
+        ("isa-gjk", OURS, |run| &run.ours),
+    ];
+    let area = blank(path, &rest.title())?;
+    let mut chart = ChartBuilder::on(&area)
+        .margin(12)
+        .x_label_area_size(45)
+        .y_label_area_size(60)
+        .build_cartesian_2d(
+            0.0..rest.frames as f64,
+            0.0..HEADROOM * f64::from(rest.bodies),
+        )?;
+    chart
+        .configure_mesh()
+        .light_line_style(TRANSPARENT)
+        .bold_line_style(GRID)
+        .label_style(FONT)
+        .x_label_formatter(&|frame| format!("{frame:.0}"))
+        .y_label_formatter(&|bodies| format!("{bodies:.0}"))
+        .x_desc("frame")
+        .y_desc("bodies awake")
+        .draw()?;
+    for (name, colour, side) in lines {
+        let style = colour.stroke_width(2);
+        for (number, run) in rest.runs.iter().enumerate() {
+            let frames = side(run).frames.iter().enumerate();
+            let line: Line = frames
+                .map(|(frame, seen)| (frame as f64, seen.awake as f64))
+                .collect();
+            let drawn = chart.draw_series(LineSeries::new(line, style))?;
+            if number == 0 {
+                drawn
+                    .label(name)
+                    .legend(move |(x, y)| PathElement::new([(x, y), (x + KEY, y)], style));
+            }
+        }
+    }
+    chart
+        .configure_series_labels()
+        .position(SeriesLabelPosition::UpperRight)
         .background_style(WHITE)
         .border_style(GRID)
         .legend_area_size(KEY + 6)

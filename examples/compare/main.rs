@@ -7,6 +7,7 @@ mod measure;
 mod options;
 mod quality;
 mod report;
+mod rest;
 mod scenes;
 mod sweep;
 mod verify;
@@ -22,11 +23,13 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use options::Options;
 use report::Report;
+use rest::Rest;
 use sweep::Sweep;
 
 fn main() -> ExitCode {
     let options = Options::parse();
     let outcome = match options.sweep {
+        None if options.until_asleep => until_asleep(&options),
         None => compare(&options),
         Some(options::Sweep::Vertices) => sweep(&options),
     };
@@ -83,6 +86,27 @@ fn sweep(options: &Options) -> Result<(), Box<dyn Error>> {
         chart::sweep(path, &sweep)?;
     }
     print(&sweep)
+}
+
+fn until_asleep(options: &Options) -> Result<(), Box<dyn Error>> {
+    let outputs = Outputs::create(options)?;
+    let frames = options.frames_until_asleep();
+    let steps = 2 * frames as u64 * u64::from(options.seeds);
+    let progress = progress_bar(options, steps);
+    let params = options.scene_params(options.vertices)?;
+    let rest = Rest::run(options.scene, &params, options.seeds, frames, &progress)?;
+    progress.finish_and_clear();
+
+    if let Some(file) = outputs.json {
+        files::write_json(file, &rest)?;
+    }
+    if let Some(file) = outputs.csv {
+        rest.write_csv(file)?;
+    }
+    if let Some(path) = &options.chart {
+        chart::awake(path, &rest)?;
+    }
+    print(&rest)
 }
 
 /// The files that are asked for.

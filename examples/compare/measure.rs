@@ -133,7 +133,7 @@ pub fn run(
 }
 
 /// Calls `step` with block lengths that sum to `frames`.
-fn in_blocks(frames: usize, mut step: impl FnMut(usize)) {
+pub fn in_blocks(frames: usize, mut step: impl FnMut(usize)) {
     for start in (0..frames).step_by(BLOCK) {
         step(BLOCK.min(frames - start));
     }

@@ -4,9 +4,13 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::{Parser, ValueEnum, value_parser};
+use rapier3d::prelude::Real;
 
 use crate::measure::RunLength;
 use crate::scenes::{HullSource, Hulls, Scene, SceneParams};
+
+/// How long a world is watched until its bodies sleep: most need two to six seconds.
+const SECONDS_UNTIL_ASLEEP: u32 = 12;
 
 /// Steps two equal rapier worlds in turn, one with rapier's own narrow phase and one with
 /// isa-gjk, and prints what each cost.
@@ -14,7 +18,8 @@ use crate::scenes::{HullSource, Hulls, Scene, SceneParams};
 #[command(name = "compare")]
 pub struct Options {
     /// What is in the world: drum, pile, stack, coins, wall, dominoes, spin, top, rolling, asleep,
-    /// cuboids, balls, mixed, compound, trimesh or heightfield
+    /// cuboids, balls, mixed, compound, trimesh, heightfield, rocks, stones, dice, pebbles, cubes,
+    /// plates, needles, breach or rubble
     #[arg(long, default_value_t = Scene::Drum)]
     pub scene: Scene,
 
@@ -31,6 +36,19 @@ pub struct Options {
     #[arg(long, value_parser = value_parser!(u32).range(1..=100_000))]
     bodies: Option<u32>,
 
+    /// The largest extent of the largest body, in metres [default: 5 to 40 cm for rocks, stones,
+    /// dice, pebbles, cubes, plates, needles, breach and rubble; about a metre elsewhere]
+    #[arg(long, value_parser = positive)]
+    size: Option<Real>,
+
+    /// Friction of all colliders [default: rapier's]
+    #[arg(long, value_parser = positive)]
+    friction: Option<Real>,
+
+    /// Steps per second
+    #[arg(long, default_value_t = 60, value_parser = value_parser!(u32).range(10..=1000))]
+    hz: u32,
+
     /// Vertices of a random hull or of a prism
     #[arg(long, default_value_t = 100, value_parser = value_parser!(u32).range(4..=20_000))]
     pub vertices: u32,
@@ -39,7 +57,8 @@ pub struct Options {
     #[arg(long, value_parser = value_parser!(u32).range(1..=100_000))]
     distinct: Option<u32>,
 
-    /// Frames to step after the warm-up, at least 2 [default: 480; 240 for piles, which then rest]
+    /// Frames to step after the warm-up, at least 2 [default: 480; 240 for piles, which then rest;
+    /// 12 seconds with --until-asleep]
     #[arg(long, value_parser = value_parser!(u32).range(2..))]
     frames: Option<u32>,
 
@@ -58,6 +77,16 @@ pub struct Options {
     /// Let bodies fall asleep, to see whether and when they do; sleeping ones cost nothing
     #[arg(long)]
     sleep: bool,
+
+    /// Let bodies fall asleep, and tell when 19 of 20 sleep for good, what all steps of the run cost
+    /// together, and how far bodies move after that, for each of --seeds. --csv writes steps and
+    /// awake bodies of every frame, --chart draws the awake bodies
+    #[arg(long, conflicts_with_all = ["sweep", "verify", "warmup", "repeat"])]
+    pub until_asleep: bool,
+
+    /// How many seeds to run with --until-asleep, from --seed on
+    #[arg(long, requires = "until_asleep", default_value_t = 1, value_parser = value_parser!(u32).range(1..=1000))]
+    pub seeds: u32,
 
     /// Give the world of isa-gjk `HullShape` colliders; the default one keeps plain hulls
     #[arg(long)]
@@ -145,6 +174,14 @@ impl FromStr for Shape {
     }
 }
 
+fn positive(text: &str) -> Result<Real, String> {
+    let number: Real = text.parse().map_err(|_| "give a number".to_owned())?;
+    let is_positive = number.is_finite() && number > 0.0;
+    is_positive
+        .then_some(number)
+        .ok_or_else(|| "give a number above zero".to_owned())
+}
+
 impl Options {
     /// What to build, of hulls with so many vertices.
     pub fn scene_params(&self, vertices: u32) -> Result<SceneParams, String> {
@@ -158,12 +195,15 @@ impl Options {
             hulls,
             distinct: self.distinct.unwrap_or(all_real),
             bodies: self.bodies.unwrap_or(self.scene.default_bodies()),
+            size: self.size.or(self.scene.default_size()),
+            friction: self.friction,
+            hz: self.hz,
             seed: self.seed,
             recycling: self.recycling == Switch::On,
             hull_shape: self.hull_shape,
             unchanged_shapes: self.unchanged_shapes,
             own_shapes: self.own_shapes,
-            can_sleep: self.sleep || self.scene == Scene::Asleep,
+            can_sleep: self.sleep || self.until_asleep || self.scene == Scene::Asleep,
         })
     }
 
@@ -176,14 +216,20 @@ impl Options {
         }
     }
 
+    /// Frames of a run that waits for bodies to sleep.
+    pub fn frames_until_asleep(&self) -> usize {
+        self.frames.unwrap_or(SECONDS_UNTIL_ASLEEP * self.hz) as usize
+    }
+
     fn hull_source(&self, vertices: u32) -> Result<HullSource, String> {
         let shape = match (&self.shape, self.scene.hulls()) {
             (Some(shape), Hulls::Any) => shape,
             (None | Some(Shape::Prism), Hulls::Prisms | Hulls::Upright) => &Shape::Prism,
             (Some(Shape::Real), Hulls::Upright) => &Shape::Real,
             (None, Hulls::Boxes) => &Shape::Box,
+            (None, Hulls::Own) => return Ok(HullSource::Own),
             (None, Hulls::Any | Hulls::None) => &Shape::Random,
-            (Some(_), Hulls::Prisms | Hulls::Upright | Hulls::Boxes | Hulls::None) => {
+            (Some(_), Hulls::Prisms | Hulls::Upright | Hulls::Boxes | Hulls::Own | Hulls::None) => {
                 return Err(format!(
                     "the scene {} makes its own shapes: leave --shape out, or choose another scene",
                     self.scene

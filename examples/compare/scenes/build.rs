@@ -3,8 +3,9 @@
 use oorandom::Rand32;
 use rapier3d::prelude::*;
 
+use super::containers::WALL;
 use super::world::World;
-use super::{Scene, SceneParams, containers, hulls, standing};
+use super::{Scene, SceneParams, containers, families, hulls, standing};
 
 /// Distance between the centres of neighbours at the start, in bounding diameters.
 const SPACING: Real = 1.1;
@@ -25,7 +26,10 @@ pub fn fill(
     hull_shape: bool,
 ) -> Result<(), String> {
     let mut random = Rand32::new(params.seed);
-    let shapes = shapes(scene, params, &mut random)?;
+    let mut shapes = shapes(scene, params, &mut random)?;
+    if let Some(size) = params.size {
+        shapes = hulls::scaled(&shapes, size)?;
+    }
     let colliders = if hull_shape {
         hulls::prepared(&shapes)?
     } else {
@@ -50,10 +54,20 @@ pub fn fill(
         Scene::Spin => filler.spinning()?,
         Scene::Top => filler.tops(),
         Scene::Rolling => filler.rolling(),
-        Scene::Trimesh | Scene::Heightfield => filler.bumpy(scene)?,
-        Scene::Pile | Scene::Cuboids | Scene::Balls | Scene::Mixed | Scene::Compound => {
-            filler.pile();
-        }
+        Scene::Trimesh | Scene::Heightfield | Scene::Rubble => filler.bumpy(scene)?,
+        Scene::Breach => filler.breach(),
+        Scene::Pile
+        | Scene::Cuboids
+        | Scene::Balls
+        | Scene::Mixed
+        | Scene::Compound
+        | Scene::Rocks
+        | Scene::Stones
+        | Scene::Dice
+        | Scene::Pebbles
+        | Scene::Cubes
+        | Scene::Plates
+        | Scene::Needles => filler.pile(),
     }
     Ok(())
 }
@@ -91,7 +105,13 @@ fn shapes(
             let hulls = hulls::make(&params.hulls, count, random)?;
             (0..hulls.len()).map(|i| pair_of_hulls(&hulls, i)).collect()
         }
-        Scene::Wall => vec![hulls::cuboid(standing::BRICK)?],
+        Scene::Rocks | Scene::Pebbles => families::rocks(count, random)?,
+        Scene::Stones => families::stones(count, random)?,
+        Scene::Dice => families::dice()?,
+        Scene::Cubes => vec![families::cube()?],
+        Scene::Plates => vec![families::plate()?],
+        Scene::Needles => vec![families::needle()?],
+        Scene::Wall | Scene::Breach => vec![hulls::cuboid(standing::BRICK)?],
         Scene::Dominoes => vec![hulls::cuboid(standing::DOMINO)?],
         Scene::Coins | Scene::Top => {
             let super::HullSource::Prism { sides } = params.hulls else {
@@ -106,7 +126,8 @@ fn shapes(
         | Scene::Rolling
         | Scene::Asleep
         | Scene::Trimesh
-        | Scene::Heightfield => hulls::make(&params.hulls, count, random)?,
+        | Scene::Heightfield
+        | Scene::Rubble => hulls::make(&params.hulls, count, random)?,
     })
 }
 
@@ -138,7 +159,7 @@ pub(super) struct Filler<'a> {
     random: Rand32,
     pub bodies: usize,
     /// A pile that falls asleep costs nothing, and its figures would say so of both worlds.
-    can_sleep: bool,
+    pub can_sleep: bool,
 }
 
 impl Filler<'_> {
@@ -169,15 +190,15 @@ impl Filler<'_> {
         self.drop_in(side, half_width, 0.0);
     }
 
-    /// On a bumpy mesh or height field.
+    /// On a bumpy mesh or height field, or on a compound of boxes.
     fn bumpy(&mut self, scene: Scene) -> Result<(), String> {
         let (side, half_width) = self.column();
         let (side, half_width) = (2 * side, 2.0 * half_width);
         let cell = 1.5 * self.reach;
-        if scene == Scene::Trimesh {
-            containers::bumpy_mesh(self.world, half_width + 1.0, cell)?;
-        } else {
-            containers::bumpy_field(self.world, half_width + 1.0, cell);
+        match scene {
+            Scene::Trimesh => containers::bumpy_mesh(self.world, half_width + WALL, cell)?,
+            Scene::Rubble => containers::bumpy_compound(self.world, half_width + WALL, cell),
+            _ => containers::bumpy_field(self.world, half_width + WALL, cell),
         }
         self.drop_in(side, half_width, cell);
         Ok(())

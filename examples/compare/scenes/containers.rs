@@ -9,7 +9,7 @@ use super::hulls;
 use super::world::World;
 
 /// Thick enough that nothing tunnels through it in a frame.
-const WALL: Real = 1.0;
+pub const WALL: Real = 1.0;
 
 /// Narrow staves have small bounding boxes: a square drum would pair each of its sides with
 /// half of the bodies.
@@ -98,6 +98,23 @@ pub fn bumpy_field(world: &mut World, half_width: Real, cell: Real) {
     let size = Vector::new(2.0 * half_width, 1.0, 2.0 * half_width);
     let field = ColliderBuilder::heightfield(heights, size);
     world.physics.insert_collider(field, None);
+}
+
+/// Much the same ground as a compound of boxes, each as high as a corner of a cell.
+pub fn bumpy_compound(world: &mut World, half_width: Real, cell: Real) {
+    let (cells, heights) = bumps(half_width, cell);
+    let along = |step: u32| half_width * (2.0 * step as Real / cells as Real - 1.0);
+    let half = half_width / cells as Real;
+    let corners = (0..=cells).flat_map(|i| (0..=cells).map(move |k| (i, k)));
+    let boxes = corners.zip(heights).map(|((i, k), height)| {
+        let place = Vector::new(along(i), height - WALL / 2.0, along(k));
+        (
+            Pose::from_translation(place),
+            SharedShape::cuboid(half, WALL / 2.0, half),
+        )
+    });
+    let compound = ColliderBuilder::compound(boxes.collect());
+    world.physics.insert_collider(compound, None);
 }
 
 /// How many cells there are along a side, and the heights of their corners, x by x.

@@ -44,6 +44,7 @@ pub fn make(
                 cuboid(Vector::new(size(), size(), size()))
             })
             .collect(),
+        HullSource::Own => Err("this scene makes its own hulls".to_owned()),
         HullSource::Real => real(distinct),
         HullSource::File(path) => {
             let hull = hull(&normalised(obj_points(path)?), &path.display().to_string())?;
@@ -98,7 +99,7 @@ pub fn cuboid(half: Vector) -> Result<SharedShape, String> {
 }
 
 /// The hull of `points`, if it is a solid: rapier gives flat ones no mass.
-fn hull(points: &[Vector], origin: &str) -> Result<SharedShape, String> {
+pub fn hull(points: &[Vector], origin: &str) -> Result<SharedShape, String> {
     let shape = SharedShape::convex_hull(points);
     let solid = shape.filter(|shape| {
         let size = shape.compute_local_bounding_sphere().radius;
@@ -110,6 +111,20 @@ fn hull(points: &[Vector], origin: &str) -> Result<SharedShape, String> {
              if many are almost in the same place"
         )
     })
+}
+
+/// The shapes, all scaled so that the largest of them is of this extent.
+pub fn scaled(shapes: &[SharedShape], size: Real) -> Result<Vec<SharedShape>, String> {
+    let extent = |shape: &SharedShape| shape.compute_local_aabb().extents().max_element();
+    let largest = shapes.iter().map(extent).fold(0.0, Real::max);
+    let scale = Vector::splat(size / largest);
+    shapes
+        .iter()
+        .map(|shape| match shape.scale_dyn(scale, 0) {
+            Some(scaled) => Ok(SharedShape(scaled.into())),
+            None => Err(format!("no body of this scene can have a size of {size} m")),
+        })
+        .collect()
 }
 
 /// The shapes with `HullShape`s in the place of plain hulls.

@@ -2,6 +2,7 @@
 
 mod build;
 mod containers;
+mod families;
 mod flat;
 pub mod hulls;
 mod standing;
@@ -12,7 +13,7 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use isa_gjk::IsaGjkDispatcher;
-use rapier3d::prelude::SharedShape;
+use rapier3d::prelude::{Real, SharedShape};
 
 pub use world::World;
 
@@ -51,11 +52,29 @@ pub enum Scene {
     Trimesh,
     /// Hulls dropped on a bumpy height field.
     Heightfield,
+    /// A pile of hulls of 8 to 20 vertices, as large as a hand.
+    Rocks,
+    /// The same, flattened, or with a large flat face.
+    Stones,
+    /// A pile of dice of 4 to 20 sides, as large as a hand.
+    Dice,
+    /// A pile of rocks of 5 cm.
+    Pebbles,
+    /// A pile of cubes as hulls.
+    Cubes,
+    /// A pile of plates a hundredth as thick as wide.
+    Plates,
+    /// A pile of rods a hundredth as thick as long.
+    Needles,
+    /// A brick wall that a ball is thrown at.
+    Breach,
+    /// Hulls dropped on a heap of boxes that is one compound.
+    Rubble,
 }
 
 impl Scene {
     /// Every scene.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 25] = [
         Self::Drum,
         Self::Pile,
         Self::Stack,
@@ -72,6 +91,15 @@ impl Scene {
         Self::Compound,
         Self::Trimesh,
         Self::Heightfield,
+        Self::Rocks,
+        Self::Stones,
+        Self::Dice,
+        Self::Pebbles,
+        Self::Cubes,
+        Self::Plates,
+        Self::Needles,
+        Self::Breach,
+        Self::Rubble,
     ];
 
     /// The name on the command line and in tables.
@@ -93,6 +121,15 @@ impl Scene {
             Self::Compound => "compound",
             Self::Trimesh => "trimesh",
             Self::Heightfield => "heightfield",
+            Self::Rocks => "rocks",
+            Self::Stones => "stones",
+            Self::Dice => "dice",
+            Self::Pebbles => "pebbles",
+            Self::Cubes => "cubes",
+            Self::Plates => "plates",
+            Self::Needles => "needles",
+            Self::Breach => "breach",
+            Self::Rubble => "rubble",
         }
     }
 
@@ -100,7 +137,15 @@ impl Scene {
     pub const fn default_bodies(self) -> u32 {
         match self {
             Self::Drum | Self::Mixed => 512,
-            Self::Pile => 400,
+            Self::Pile | Self::Breach => 400,
+            Self::Rocks
+            | Self::Stones
+            | Self::Dice
+            | Self::Pebbles
+            | Self::Cubes
+            | Self::Plates
+            | Self::Needles
+            | Self::Rubble => 300,
             Self::Spin | Self::Top => 16,
             Self::Dominoes | Self::Rolling => 64,
             Self::Stack | Self::Wall => 128,
@@ -118,13 +163,32 @@ impl Scene {
         }
     }
 
+    /// The largest extent of a body in metres, of scenes that scale their shapes.
+    pub const fn default_size(self) -> Option<f32> {
+        match self {
+            Self::Rocks | Self::Stones | Self::Dice | Self::Rubble => Some(0.12),
+            Self::Pebbles => Some(0.05),
+            Self::Cubes => Some(0.1),
+            Self::Plates | Self::Needles => Some(0.4),
+            Self::Breach => Some(0.25),
+            _ => None,
+        }
+    }
+
     /// Which hulls the scene can be filled with.
     pub const fn hulls(self) -> Hulls {
         match self {
             Self::Cuboids | Self::Balls => Hulls::None,
+            Self::Rocks
+            | Self::Stones
+            | Self::Dice
+            | Self::Pebbles
+            | Self::Cubes
+            | Self::Plates
+            | Self::Needles => Hulls::Own,
             Self::Stack => Hulls::Upright,
             Self::Coins | Self::Spin | Self::Top => Hulls::Prisms,
-            Self::Wall | Self::Dominoes => Hulls::Boxes,
+            Self::Wall | Self::Dominoes | Self::Breach => Hulls::Boxes,
             Self::Drum
             | Self::Pile
             | Self::Rolling
@@ -132,7 +196,8 @@ impl Scene {
             | Self::Mixed
             | Self::Compound
             | Self::Trimesh
-            | Self::Heightfield => Hulls::Any,
+            | Self::Heightfield
+            | Self::Rubble => Hulls::Any,
         }
     }
 
@@ -170,6 +235,8 @@ pub enum Hulls {
     Upright,
     /// Boxes of its own.
     Boxes,
+    /// A family of its own.
+    Own,
     /// From any source.
     Any,
 }
@@ -189,6 +256,8 @@ pub enum HullSource {
     },
     /// Boxes of eight vertices.
     Box,
+    /// The scene's own family.
+    Own,
     /// Hulls of objects that robots handle, from the test data of this crate.
     Real,
     /// The hull of the vertices of one Wavefront file.
@@ -201,6 +270,7 @@ impl fmt::Display for HullSource {
             Self::Random { vertices } => write!(f, "random hulls of {vertices} vertices"),
             Self::Prism { sides } => write!(f, "prisms of {sides} sides"),
             Self::Box => f.write_str("boxes as hulls"),
+            Self::Own => f.write_str("hulls of its own"),
             Self::Real => f.write_str("hulls of real objects"),
             Self::File(path) => write!(f, "hull of {}", path.display()),
         }
@@ -216,6 +286,12 @@ pub struct SceneParams {
     pub distinct: u32,
     /// Dynamic bodies.
     pub bodies: u32,
+    /// The largest extent of the largest body in metres, if the shapes are to be scaled.
+    pub size: Option<Real>,
+    /// Of all colliders; `None` leaves rapier's default.
+    pub friction: Option<Real>,
+    /// Steps per second.
+    pub hz: u32,
     /// Seed of shapes and poses.
     pub seed: u64,
     /// Whether rapier may keep the contacts of pairs that hardly moved.
@@ -240,7 +316,13 @@ pub fn build(
     let hull_shape = params.hull_shape && dispatcher.is_some();
     let mut world = World::new(dispatcher, params.unchanged_shapes);
     world.physics.integration_parameters.contact_recycling = params.recycling;
+    world.physics.integration_parameters.dt = 1.0 / params.hz as Real;
     build::fill(&mut world, scene, params, hull_shape)?;
+    if let Some(friction) = params.friction {
+        for (_, collider) in world.physics.colliders.iter_mut() {
+            collider.set_friction(friction);
+        }
+    }
     if params.own_shapes {
         for (_, collider) in world.physics.colliders.iter_mut() {
             let copy = collider.shape().clone_dyn();

@@ -7,30 +7,39 @@ use rapier3d::prelude::*;
 use super::build::{Filler, GAP, square_cell};
 use super::containers;
 
-/// Half extents of a brick, in metres.
+/// Half extents of a brick, in metres, before it is scaled.
 pub(super) const BRICK: Vector = Vector::new(0.4, 0.15, 0.2);
-/// Half extents of a domino, in metres.
+/// Half extents of a domino, in metres, before it is scaled.
 pub(super) const DOMINO: Vector = Vector::new(0.05, 0.5, 0.25);
 /// Radians per second at which prisms turn about their axes.
 const SLOW: Real = 0.5;
 /// Radians per second about the axis of a coin on its rim, which leans by [`LEAN`] radians.
 const FAST: Real = 12.0;
 const LEAN: Real = 0.6;
-/// Radians per second of the first domino.
+/// Radians per second of the first domino, if it is a metre high.
 const PUSH: Vector = Vector::new(0.0, 0.0, -2.0);
+/// Radius of the ball that is thrown at a wall, in lengths of a brick.
+const BALL: Real = 1.0;
+/// It is as heavy as stone where bricks are as heavy as wood.
+const BALL_DENSITY: Real = 4.0;
+/// Metres per second of a ball for bricks of a metre.
+const THROW: Real = 20.0;
+/// Stands for the friction of rolling.
+const ROLLING_DAMPING: Real = 1.0;
 /// Metres per second at which hulls roll.
 const ROLL: Real = 2.0;
 
 impl Filler<'_> {
     /// Layers of bricks, each a brick shorter than that beneath it and shifted by half a brick.
     pub(super) fn wall(&mut self) {
-        let width = 2.0 * BRICK.x + GAP;
+        let brick = self.half_extents();
+        let width = 2.0 * brick.x + GAP;
         let mut in_layer = (1..).find(|n| n * (n + 1) / 2 >= self.bodies).unwrap_or(1);
         containers::floor(self.world, width * in_layer as Real);
-        let (mut place, mut y) = (0, BRICK.y + GAP);
+        let (mut place, mut y) = (0, brick.y + GAP);
         for i in 0..self.bodies {
             if place == in_layer {
-                (in_layer, place, y) = (in_layer - 1, 0, y + 2.0 * BRICK.y + GAP);
+                (in_layer, place, y) = (in_layer - 1, 0, y + 2.0 * brick.y + GAP);
             }
             let x = (place as Real - 0.5 * (in_layer - 1) as Real) * width;
             self.insert(i, Pose::translation(x, y, 0.0));
@@ -38,16 +47,49 @@ impl Filler<'_> {
         }
     }
 
+    /// Layers of equal length, each shifted by half a brick, and a ball on its way to the middle.
+    pub(super) fn breach(&mut self) {
+        let brick = self.half_extents();
+        let width = 2.0 * brick.x + GAP;
+        let height = 2.0 * brick.y + GAP;
+        let side = (self.bodies as Real).sqrt().ceil() as usize;
+        let half_width = 0.75 * width * side as Real;
+        containers::floor(self.world, half_width + containers::WALL);
+        containers::walls(self.world, half_width, half_width);
+        for i in 0..self.bodies {
+            let layer = i / side;
+            let shift = if layer.is_multiple_of(2) { 0.25 } else { -0.25 };
+            let x = ((i % side) as Real - 0.5 * (side - 1) as Real + shift) * width;
+            let y = brick.y + GAP + layer as Real * height;
+            self.insert(i, Pose::translation(x, y, 0.0));
+        }
+        let radius = BALL * 2.0 * brick.x;
+        let middle = 0.5 * height * (self.bodies / side) as Real;
+        let start = Vector::new(0.0, middle.max(radius), 4.0 * radius);
+        let ball = RigidBodyBuilder::dynamic()
+            .translation(start)
+            .linvel(Vector::Z * (-THROW * (2.0 * brick.x).sqrt()))
+            .angular_damping(ROLLING_DAMPING)
+            .can_sleep(self.can_sleep);
+        let collider = ColliderBuilder::ball(radius).density(BALL_DENSITY);
+        self.world.physics.insert(ball, collider);
+    }
+
+    fn half_extents(&self) -> Vector {
+        self.shape(0).compute_local_aabb().half_extents()
+    }
+
     /// A row, of which the first is pushed.
     pub(super) fn dominoes(&mut self) {
-        let spacing = DOMINO.y;
+        let domino = self.half_extents();
+        let spacing = domino.y;
         let row = spacing * self.bodies as Real;
-        containers::floor(self.world, row / 2.0 + 2.0 * DOMINO.y);
+        containers::floor(self.world, row / 2.0 + 2.0 * domino.y);
         for i in 0..self.bodies {
             let x = spacing * i as Real - row / 2.0;
-            let (body, _) = self.insert(i, Pose::translation(x, DOMINO.y + GAP, 0.0));
+            let (body, _) = self.insert(i, Pose::translation(x, domino.y + GAP, 0.0));
             if i == 0 {
-                self.world.physics.bodies[body].set_angvel(PUSH, true);
+                self.world.physics.bodies[body].set_angvel(PUSH / (2.0 * domino.y).sqrt(), true);
             }
         }
     }
