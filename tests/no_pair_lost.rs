@@ -4,7 +4,8 @@
 //! support falls through the floor in silence, and parry's dispatcher hands itself, not us, to
 //! the routines for compounds, meshes, heightfields and voxels. So every shape meets every
 //! shape: the dispatcher supports exactly what parry supports, finds contacts wherever parry
-//! does, and passes every pair without a convex hull through untouched, to the last bit.
+//! does, and passes every pair without a convex hull through untouched, to the last bit. Of compounds
+//! only the parts are: we find them ourselves, and their poses may be rounded otherwise.
 
 mod common;
 
@@ -77,6 +78,25 @@ fn assert_same(ours: &impl Debug, theirs: &impl Debug, what: &str) {
     assert_eq!(format!("{ours:?}"), format!("{theirs:?}"), "{what}");
 }
 
+/// The same parts meet, as deeply.
+fn assert_near(ours: &[Manifold], theirs: &[Manifold], what: &str) {
+    let [ours, theirs] = [ours, theirs].map(|manifolds| {
+        let deepest =
+            |m: &Manifold| Some((m.subshape1, m.subshape2, m.find_deepest_contact()?.dist));
+        // At the very edge of the prediction either answer is right.
+        let near = manifolds.iter().filter_map(deepest);
+        let mut near: Vec<_> = near.filter(|&(.., dist)| dist < 0.9 * PREDICTION).collect();
+        near.sort_by_key(|&(part_1, part_2, _)| (part_1, part_2));
+        near
+    });
+    let is_near = ours.len() == theirs.len()
+        && ours
+            .iter()
+            .zip(&theirs)
+            .all(|(a, b)| (a.0, a.1) == (b.0, b.1) && (a.2 - b.2).abs() < 1e-4);
+    assert!(is_near, "{what}: {ours:?}, parry {theirs:?}");
+}
+
 #[test]
 fn contacts_are_found_wherever_parry_finds_them() {
     let (mut checked, mut in_contact) = (0, 0);
@@ -89,7 +109,11 @@ fn contacts_are_found_wherever_parry_finds_them() {
                 let we_can = contacts(&dispatcher, pair, &pose, &mut ours);
                 let they_can = contacts(&DefaultQueryDispatcher, pair, &pose, &mut theirs);
                 assert_eq!(we_can, they_can, "supported: {what}");
-                if !pair.iter().any(|exhibit| exhibit.has_hull) {
+                if pair.iter().any(|exhibit| exhibit.has_hull) {
+                    // Ours to answer.
+                } else if pair.iter().any(|exhibit| exhibit.name == "compound") {
+                    assert_near(&ours.manifolds, &theirs.manifolds, &what);
+                } else {
                     assert_same(&ours.manifolds, &theirs.manifolds, &what);
                 }
                 checked += 1;

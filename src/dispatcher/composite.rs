@@ -1,5 +1,5 @@
-//! Composite shapes: they are taken apart by our routines where hulls are involved, by parry's
-//! otherwise, and *we* are asked about the parts.
+//! Composite shapes: our routines take compounds apart, and meshes that meet a hull; parry's routines
+//! do the rest. Either way *we* are asked about the parts.
 //!
 //! Parry's own dispatcher hands itself to those routines, so that a dispatcher chained in front
 //! of it never sees the hulls inside of compounds, meshes, height fields and voxels.
@@ -37,7 +37,7 @@ where
     // Parry's routines assert that boxes are not loosened by less than nothing.
     let prediction = prediction.max(0.0);
     let [s1, s2] = shapes;
-    if with_hull(dispatcher, pos12, shapes, prediction, manifolds, workspace) {
+    if by_us(dispatcher, pos12, shapes, prediction, manifolds, workspace) {
         return true;
     }
     let composites = [s1.as_composite_shape(), s2.as_composite_shape()];
@@ -120,9 +120,12 @@ pub(super) fn keep_one<M: Default + Clone, C: Default + Copy>(
     manifolds.push(ContactManifold::with_data(0, 0, M::default()));
 }
 
-/// A compound with a hull against another compound or a convex shape, or a hull against a shape made
-/// of triangles. `false` for other pairs.
-fn with_hull<M, C>(
+/// A compound against another one or a convex shape, or a hull against a shape made of triangles.
+/// `false` for other pairs.
+///
+/// Compounds are ours whether or not they have a hull: to find out would take a look at every part in
+/// every update, however few of them are near.
+fn by_us<M, C>(
     dispatcher: &IsaGjkDispatcher,
     pos12: &Pose,
     [s1, s2]: [&dyn Shape; 2],
@@ -134,28 +137,23 @@ where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
 {
+    let begin = |manifolds, workspace| Update::begin(dispatcher, prediction, manifolds, workspace);
     if let [Some(c1), Some(c2)] = [s1.as_compound(), s2.as_compound()] {
-        let ours = compound::has_hull(c1) || compound::has_hull(c2);
-        if ours {
-            let update = Update::begin(dispatcher, prediction, manifolds, workspace);
-            compound::compounds(update, pos12, [c1, c2]);
-        }
-        return ours;
+        compound::compounds(begin(manifolds, workspace), pos12, [c1, c2]);
+        return true;
     }
     for (first, second, swapped) in [(s1, s2, false), (s2, s1, true)] {
-        if let Some(compound) = first.as_compound() {
-            let ours =
-                second.is_convex() && (pair::is_hull(second) || compound::has_hull(compound));
-            if ours {
-                let update = Update::begin(dispatcher, prediction, manifolds, workspace);
-                compound::compound_and_convex(update, pos12, compound, second, swapped);
-            }
-            return ours;
+        if let Some(compound) = first.as_compound()
+            && second.is_convex()
+        {
+            let update = begin(manifolds, workspace);
+            compound::compound_and_convex(update, pos12, compound, second, swapped);
+            return true;
         }
         if let Some(triangles) = Triangles::of(first)
             && pair::is_hull(second)
         {
-            let update = Update::begin(dispatcher, prediction, manifolds, workspace);
+            let update = begin(manifolds, workspace);
             mesh::triangles_and_hull(update, pos12, triangles, second, swapped);
             return true;
         }

@@ -1,4 +1,4 @@
-//! Contacts of compounds with hulls among their parts.
+//! Contacts of compounds.
 //!
 //! Parry's routine for these pairs scans all points of each part for its bounding box, moves every
 //! manifold, and looks each one up in a hash table: for parts of sixty points more work than our
@@ -11,17 +11,11 @@ use parry3d::shape::{Compound, Shape};
 
 use super::constraints::Constraints;
 use super::hulls::LastProved;
-use super::pair::{self, Side};
+use super::pair::Side;
 use super::sub_pairs::{Part, Update};
 
 /// Of a compound with more parts than this, some prove their hulls more than once.
 const PROOFS: usize = 8;
-
-/// Whether a part of the compound is a hull.
-pub(super) fn has_hull(compound: &Compound) -> bool {
-    let mut parts = compound.shapes().iter();
-    parts.any(|(_, shape)| pair::is_hull(&**shape))
-}
 
 /// Two compounds.
 pub(super) fn compounds<M, C>(mut update: Update<'_, M, C>, pos12: &Pose, [c1, c2]: [&Compound; 2])

@@ -9,13 +9,12 @@
 //!
 //! Each thread has a table of its own, which needs no lock; the hulls themselves are shared.
 
-use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hasher};
 use std::sync::Arc;
 
 use glam::Vec3;
 use parry3d::shape::ConvexPolyhedron;
 
+use super::int_hash::IntMap;
 use super::preparation::Preparation;
 use super::unchanged::Span;
 use crate::hull::Hull;
@@ -29,7 +28,7 @@ const STALE_AFTER: u64 = 1 << 20;
 /// A thread's prepared hulls.
 #[derive(Default)]
 pub(super) struct HullTable {
-    entries: HashMap<Address, usize, BuildHasherDefault<AddressHasher>>,
+    entries: IntMap<Address, usize>,
     /// The last address and slot met of each class of addresses, before the map is asked.
     recent: Recent,
     slots: Vec<Slot>,
@@ -238,26 +237,5 @@ impl Recent {
     #[inline(always)]
     fn class(&mut self, address: Address) -> &mut (Address, usize) {
         &mut self.0[(address >> 4 ^ address >> 12) % CLASSES]
-    }
-}
-
-/// Addresses are unique already; one multiplication spreads them over the buckets.
-#[derive(Default)]
-pub(super) struct AddressHasher(u64);
-
-impl Hasher for AddressHasher {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-
-    fn write(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.write_usize(byte.into());
-        }
-    }
-
-    fn write_usize(&mut self, value: usize) {
-        let mixed = (self.0 ^ value as u64).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        self.0 = mixed ^ mixed >> 32;
     }
 }

@@ -9,6 +9,7 @@ mod convex;
 mod digest;
 mod half_space;
 mod hulls;
+mod int_hash;
 mod mesh;
 mod others;
 mod pair;
@@ -38,7 +39,7 @@ use unchanged::{Span, Unchanged};
 use crate::stats::{SharedStats, Stats};
 
 /// A query dispatcher that answers pairs with a convex hull itself and passes every other pair
-/// on to parry's own.
+/// on to parry's own. It also finds the parts of compounds that meet, whatever they are.
 ///
 /// Give it to `NarrowPhase::with_query_dispatcher`, or to `set_query_dispatcher` of a world that
 /// runs already. Clones share their statistics.

@@ -11,6 +11,7 @@ use parry3d::shape::Shape;
 
 use super::constraints::Constraints;
 use super::hulls::LastProved;
+use super::int_hash::IntMap;
 use super::pair::Side;
 use super::{IsaGjkDispatcher, composite};
 
@@ -42,6 +43,18 @@ pub(super) struct Update<'a, M, C> {
     manifolds: &'a mut Vec<ContactManifold<M, C>>,
     /// How many of them are of this frame; those of parts that meet no more come behind.
     done: usize,
+    /// How many have been looked at in search of one.
+    searched: usize,
+    /// Where those behind `done` are, once searching has become more work than this.
+    places: Option<IntMap<u64, usize>>,
+}
+
+/// An update may look at every manifold this many times before it makes a map of them.
+const SEARCHES: usize = 2;
+
+/// By which the manifold of two parts is found.
+fn key(part_1: u32, part_2: u32) -> u64 {
+    u64::from(part_1) << 32 | u64::from(part_2)
 }
 
 impl<'a, M, C> Update<'a, M, C>
@@ -83,6 +96,8 @@ where
             prediction,
             manifolds,
             done: 0,
+            searched: 0,
+            places: None,
         }
     }
 
@@ -104,11 +119,8 @@ where
     /// Where the manifold of two parts is: mostly where it was, for parts come in the same order.
     fn manifold(&mut self, part_1: &Part<'_>, part_2: &Part<'_>) -> usize {
         let place = self.done;
-        let is_of_parts = |manifold: &ContactManifold<M, C>| {
-            manifold.subshape1 == part_1.id && manifold.subshape2 == part_2.id
-        };
-        let known = self.manifolds[place..].iter().position(is_of_parts);
-        let found = known.map_or(self.manifolds.len(), |offset| place + offset);
+        let known = self.find(part_1.id, part_2.id);
+        let found = known.unwrap_or(self.manifolds.len());
         if known.is_none() {
             let mut manifold = ContactManifold::with_data(part_1.id, part_2.id, M::default());
             manifold.set_subshape_pos1(part_1.pos);
@@ -117,9 +129,40 @@ where
         }
         if found != place {
             self.manifolds.swap(place, found);
+            if let Some(places) = &mut self.places {
+                places.insert(Self::key_of(&self.manifolds[found]), found);
+            }
         }
         self.done += 1;
         place
+    }
+
+    /// The manifold of two parts among those behind `done`.
+    fn find(&mut self, part_1: u32, part_2: u32) -> Option<usize> {
+        let key = key(part_1, part_2);
+        let is_wanted = |manifold: &ContactManifold<M, C>| Self::key_of(manifold) == key;
+        let rest = &self.manifolds[self.done..];
+        if rest.first().is_some_and(is_wanted) {
+            return Some(self.done);
+        }
+        if self.searched > SEARCHES * self.manifolds.len() {
+            return self.places().get(&key).copied();
+        }
+        let known = rest.iter().position(is_wanted);
+        self.searched += known.unwrap_or(rest.len());
+        known.map(|offset| self.done + offset)
+    }
+
+    fn places(&mut self) -> &IntMap<u64, usize> {
+        self.places.get_or_insert_with(|| {
+            let rest = self.manifolds.iter().enumerate().skip(self.done);
+            rest.map(|(i, manifold)| (Self::key_of(manifold), i))
+                .collect()
+        })
+    }
+
+    fn key_of(manifold: &ContactManifold<M, C>) -> u64 {
+        key(manifold.subshape1, manifold.subshape2)
     }
 
     /// Drops the manifolds of parts that meet no more.
