@@ -23,18 +23,8 @@ use scenes::{HullSource, Scene, SceneParams, World};
 
 fn params(hulls: HullSource, bodies: u32) -> SceneParams {
     SceneParams {
-        hulls,
         distinct: 8,
-        bodies,
-        size: None,
-        friction: None,
-        hz: 60,
-        seed: 1,
-        recycling: true,
-        hull_shape: false,
-        unchanged_shapes: false,
-        own_shapes: false,
-        can_sleep: true,
+        ..SceneParams::new(hulls, bodies)
     }
 }
 

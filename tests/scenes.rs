@@ -16,21 +16,15 @@ fn params(scene: Scene, hull_shape: bool) -> SceneParams {
     let hulls = match scene.hulls() {
         Hulls::Prisms | Hulls::Upright => HullSource::Prism { sides: 12 },
         Hulls::Boxes => HullSource::Box,
+        Hulls::Own => HullSource::Own,
         Hulls::Any | Hulls::None => HullSource::Random { vertices: 40 },
     };
     SceneParams {
-        hulls,
         distinct: 8,
-        bodies: 64,
-        size: None,
-        friction: None,
-        hz: 60,
         seed: 3,
-        recycling: true,
         hull_shape,
-        unchanged_shapes: false,
-        own_shapes: false,
         can_sleep: scene == Scene::Asleep,
+        ..SceneParams::new(hulls, 64)
     }
 }
 
@@ -126,8 +120,12 @@ fn settled(scene: Scene) -> Option<Settled> {
         // Flat on the floor: half of their height of 0.06 m.
         Scene::Top => (0.1, 0.025),
         // A layer or two, in the hollows of the ground.
-        Scene::Trimesh | Scene::Heightfield => (0.1, -0.1),
-        _ => (0.1, 0.25),
+        Scene::Trimesh | Scene::Heightfield | Scene::Rubble => (0.1, -0.1),
+        // Four millimetres thick, and pressed into each other by a few.
+        Scene::Plates | Scene::Needles => (2.0, 0.002),
+        Scene::Breach => (0.1, 0.05),
+        // A quarter of what a body measures.
+        _ => (0.1, 0.25 * f64::from(scene.default_size().unwrap_or(1.0))),
     };
     Some(Settled { overlap, height })
 }

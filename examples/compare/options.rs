@@ -186,16 +186,11 @@ impl Options {
     /// What to build, of hulls with so many vertices.
     pub fn scene_params(&self, vertices: u32) -> Result<SceneParams, String> {
         let hulls = self.hull_source(vertices)?;
-        let all_real = if hulls == HullSource::Real {
-            u32::MAX
-        } else {
-            16
-        };
+        let bodies = self.bodies.unwrap_or(self.scene.default_bodies());
+        let params = SceneParams::new(hulls, bodies);
         Ok(SceneParams {
-            hulls,
-            distinct: self.distinct.unwrap_or(all_real),
-            bodies: self.bodies.unwrap_or(self.scene.default_bodies()),
-            size: self.size.or(self.scene.default_size()),
+            distinct: self.distinct.unwrap_or(params.distinct),
+            size: self.size,
             friction: self.friction,
             hz: self.hz,
             seed: self.seed,
@@ -204,6 +199,7 @@ impl Options {
             unchanged_shapes: self.unchanged_shapes,
             own_shapes: self.own_shapes,
             can_sleep: self.sleep || self.until_asleep || self.scene == Scene::Asleep,
+            ..params
         })
     }
 

@@ -96,7 +96,7 @@ impl Rest {
                 _ => params.hulls.to_string(),
             },
             bodies: params.bodies,
-            size: params.size,
+            size: params.size.or(scene.default_size()),
             friction: params.friction,
             hz: params.hz,
             recycling: params.recycling,

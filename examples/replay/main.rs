@@ -81,20 +81,15 @@ impl Options {
                 vertices: self.vertices,
             },
             Hulls::Boxes => HullSource::Box,
+            Hulls::Own => HullSource::Own,
             Hulls::Prisms | Hulls::Upright => HullSource::Prism {
                 sides: (self.vertices / 2).max(3),
             },
         };
+        let bodies = self.bodies.unwrap_or(self.scene.default_bodies());
         SceneParams {
-            distinct: if self.real { u32::MAX } else { 16 },
-            bodies: self.bodies.unwrap_or(self.scene.default_bodies()),
             seed: self.seed,
-            recycling: true,
-            hull_shape: false,
-            unchanged_shapes: false,
-            own_shapes: false,
-            can_sleep: true,
-            hulls,
+            ..SceneParams::new(hulls, bodies)
         }
     }
 

@@ -27,7 +27,7 @@ pub fn fill(
 ) -> Result<(), String> {
     let mut random = Rand32::new(params.seed);
     let mut shapes = shapes(scene, params, &mut random)?;
-    if let Some(size) = params.size {
+    if let Some(size) = params.size.or(scene.default_size()) {
         shapes = hulls::scaled(&shapes, size)?;
     }
     let colliders = if hull_shape {

@@ -286,7 +286,7 @@ pub struct SceneParams {
     pub distinct: u32,
     /// Dynamic bodies.
     pub bodies: u32,
-    /// The largest extent of the largest body in metres, if the shapes are to be scaled.
+    /// The largest extent of the largest body in metres; `None` leaves the scene's own.
     pub size: Option<Real>,
     /// Of all colliders; `None` leaves rapier's default.
     pub friction: Option<Real>,
@@ -305,6 +305,30 @@ pub struct SceneParams {
     /// Whether bodies may fall asleep. Those that do cost nothing, and figures of time would say
     /// so of both worlds.
     pub can_sleep: bool,
+}
+
+impl SceneParams {
+    /// Plain hulls in a world with rapier's own settings.
+    pub fn new(hulls: HullSource, bodies: u32) -> Self {
+        Self {
+            distinct: if hulls == HullSource::Real {
+                u32::MAX
+            } else {
+                16
+            },
+            hulls,
+            bodies,
+            size: None,
+            friction: None,
+            hz: 60,
+            seed: 1,
+            recycling: true,
+            hull_shape: false,
+            unchanged_shapes: false,
+            own_shapes: false,
+            can_sleep: true,
+        }
+    }
 }
 
 /// Builds `scene`; without a dispatcher, rapier's own narrow phase answers.
