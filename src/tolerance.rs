@@ -27,6 +27,10 @@ pub const SLIVER: f64 = 4e-6;
 /// climb may lose many times what its dents are deep.
 pub const CONVEXITY: f64 = 1e-6;
 
+/// How far (relative to the radius) a hull may reach beyond the plane of a face: many dents in a row
+/// make a bowl. The noise of scanned plates stays below it.
+pub const BOWL: f64 = 5e-5;
+
 /// A triangle lower than this share of the radius may face inwards by the rounding of its corners;
 /// a higher one that does is a fold of the surface. Ten f32 roundings.
 pub const FOLD: f64 = 6e-7;
@@ -50,9 +54,9 @@ pub const PLATEAU: f64 = 4e-7;
 /// steeply as anything that is climbed.
 pub const SHORT_EDGE: f64 = 1e-2;
 
-/// Neighbouring corners of a face tilted by `t` differ by `t (2 pi / n)^2 / 2` around its lowest
-/// one. With this many corners that is a rounding for tilts that matter.
-pub const LARGE_FACE: usize = 16;
+/// The way up from a false summit may begin with a step down by this share of `radius * |direction|`:
+/// a vertex is beneath its neighbours by no more than a few dents.
+pub const DIP: f64 = 4.0 * CONVEXITY;
 
 /// GJK stops when its bounds of the distance differ by less than this share of the distance...
 pub const GJK_RELATIVE_GAP: f64 = 1e-9;

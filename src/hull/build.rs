@@ -13,7 +13,7 @@ use super::surface::{Surface, next};
 use super::{Hull, HullError, Search};
 use crate::stats::Cost;
 use crate::support::{FaceId, Polytope};
-use crate::tolerance::{CONVEXITY, FOLD, THINNEST};
+use crate::tolerance::{BOWL, CONVEXITY, FOLD, THINNEST};
 
 /// The most vertices a hull may have: its at most `2 n - 4` faces must have 16-bit names.
 const MAX_VERTICES: usize = 32_768;
@@ -69,21 +69,29 @@ impl Hull {
         // All arithmetic is f64: converted once.
         let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
         let (center, radius) = center_and_radius(&exact, triangles)?;
-        require_convex(&exact, &surface, radius)?;
+        let at_flat_edge = require_convex(&exact, &surface, radius)?;
         require_single_layer(&exact, triangles, center, radius)?;
 
         let (mut faces, joined) = Faces::new(&exact, &surface, radius);
         let mut graph = EdgeGraph::new(&surface, &joined.face_of);
+        let slope = Slope {
+            points: &points,
+            graph: &graph,
+            center,
+            radius,
+        };
+        require_no_bowl(slope, &faces)?;
         faces.add_caps(&exact, &graph, &joined);
         let search = match Scan::new(&points, center, radius) {
             Some(scan) => Search::Scan(scan),
             None => {
-                let face_len = |f: u16| faces.polygon(f.into()).len();
-                graph
-                    .mark_fragile(|graph, v| climb::is_fragile(&exact, graph, radius, face_len, v));
+                graph.mark_fragile(|graph, v| {
+                    at_flat_edge[v as usize] || climb::has_short_edge(&exact, graph, radius, v)
+                });
                 let slope = Slope {
                     points: &points,
                     graph: &graph,
+                    center,
                     radius,
                 };
                 Search::Climb(StartTable::new(points.len(), |dir, start| {
@@ -174,23 +182,49 @@ fn center_and_radius(points: &[DVec3], triangles: &[[u32; 3]]) -> Result<(DVec3,
 }
 
 /// No edge is a dent, beyond rounding. For a closed surface in a single layer, convexity at every
-/// edge is convexity.
+/// edge is convexity. The answer tells which vertices belong to
+/// two triangles that are flat up to rounding.
 ///
 /// A dent is as deep as the edge passes beneath the other diagonal of its two triangles. (Heights
 /// over the triangles' planes say nothing where these are slivers.)
-fn require_convex(points: &[DVec3], surface: &Surface<'_>, radius: f64) -> Result<(), HullError> {
+fn require_convex(
+    points: &[DVec3],
+    surface: &Surface<'_>,
+    radius: f64,
+) -> Result<Vec<bool>, HullError> {
+    let mut at_flat_edge = vec![false; points.len()];
     let at = |v: u32| points[v as usize];
     for h in 0..3 * surface.triangles.len() as u32 {
         let twin = surface.twin(h);
         if h < twin {
-            let opposite = surface.end(next(twin));
-            let [a, b, c] = [surface.start(h), surface.end(h), surface.end(next(h))].map(at);
-            let d = at(opposite);
+            let ends = [surface.start(h), surface.end(h)];
+            let [third, opposite] = [h, twin].map(|h| surface.end(next(h)));
+            let ([a, b], c, d) = (ends.map(at), at(third), at(opposite));
             let across = (b - a).cross(d - c);
             let rise = (b - a).cross(c - a).dot(d - a);
-            if rise > CONVEXITY * radius * across.length() {
+            let rounding = CONVEXITY * radius * across.length();
+            if rise > rounding {
                 return Err(HullError::NotConvex(opposite as usize));
             }
+            if rise >= -rounding {
+                for v in ends.into_iter().chain([third, opposite]) {
+                    at_flat_edge[v as usize] = true;
+                }
+            }
+        }
+    }
+    Ok(at_flat_edge)
+}
+
+/// No face has much of the hull before its plane. Each edge of a bowl is a dent within rounding, but
+/// many of them add up: the way up from the face leads to the rim.
+fn require_no_bowl(slope: Slope<'_>, faces: &Faces) -> Result<(), HullError> {
+    for face in 0..faces.len() as FaceId {
+        let normal = faces.normal(face);
+        let corner = faces.polygon(face)[0].vertex.into();
+        let (summit, height) = climb::nearest_summit(slope, normal, corner);
+        if height - faces.offset(face) > BOWL * slope.radius {
+            return Err(HullError::NotConvex(summit as usize));
         }
     }
     Ok(())

@@ -8,9 +8,13 @@
 //! move has a strictly worse neighbour. With rounded coordinates a tie may also hide a small rise
 //! or a small fall: over a very short edge, or along the rim of a face with many corners.
 //!
-//! Such vertices are known when the hull is built ([`is_fragile`]). A climb that ends at one of them
-//! with a neighbour that ties searches the plateau for a vertex above it, and climbs on from
-//! there.
+//! All vertices at which that may happen are known when the hull is built: they have an edge that is
+//! flat up to rounding, or a very short one. A climb that ends at one of them with a neighbour that is
+//! hardly lower searches the plateau around for a vertex above it, and climbs on from there. A plateau
+//! of more than a few vertices is not searched: a scan of all points takes less time.
+//!
+//! A dent may be a false summit for directions that point into the hull, however deep it is. But the
+//! top is above the centre. So a climb that ends below the centre is finished by a scan.
 //!
 //! Promise: with `s` the returned vertex, `h(d) - d·s` is at most [`PLATEAU`]` * radius * |d|` on
 //! convex hulls, and four times that on those that f32 rounding has dented, up to needles of
@@ -19,20 +23,36 @@
 //! which a climb would lose more: with deeper dents, folds, or two layers. The limits are those
 //! measured in `tests/hill_climbing.rs`.
 
+use std::array;
+
 use glam::{DVec3, Vec3};
 
 use super::graph::{EdgeGraph, LAST, Star};
 use super::top::{Highest, LANES, coordinates};
 use crate::stats::Cost;
 use crate::support::VertexId;
-use crate::tolerance::{LARGE_FACE, PLATEAU, SHORT_EDGE};
+use crate::tolerance::{DIP, PLATEAU, SHORT_EDGE};
 
 /// What a climb goes over.
 #[derive(Clone, Copy)]
 pub(super) struct Slope<'a> {
     pub points: &'a [Vec3],
     pub graph: &'a EdgeGraph,
+    pub center: DVec3,
     pub radius: f64,
+}
+
+/// A larger plateau is not searched.
+const SMALL_PLATEAU: usize = 16;
+
+/// What a search of a plateau found.
+enum Plateau {
+    /// A vertex above it.
+    Exit(VertexId),
+    /// It is the maximum.
+    Top,
+    /// It is too large for a search.
+    Large,
 }
 
 /// The extreme vertex in direction `dir`, climbing from `start`.
@@ -52,19 +72,33 @@ pub(super) fn extreme_vertex(
             cost.climb_moves += 1;
             continue;
         }
-        let fall = value - height;
-        let tie = PLATEAU * slope.radius;
-        let ties = fall * fall <= tie * tie * dir.length_squared();
-        // Together: ties are not predictable (along an edge's normal its ends tie), fragile
-        // vertices are.
-        if ties & slope.graph.star(at).is_fragile()
-            && let Some(exit) = slope.leave_plateau(dir, at)
-        {
-            (at, value) = (exit, slope.height(dir, exit));
-            cost.climb_moves += 1;
-            continue;
+        if value < dir.dot(slope.center) {
+            return slope.scan(dir, at);
+        }
+        if slope.graph.star(at).is_fragile() && slope.is_hardly_lower(dir, value - height) {
+            match slope.search_plateau(dir, at) {
+                Plateau::Exit(exit) => {
+                    (at, value) = (exit, slope.height(dir, exit));
+                    cost.climb_moves += 1;
+                    continue;
+                }
+                Plateau::Large => return slope.scan(dir, at),
+                Plateau::Top => {}
+            }
         }
         return at;
+    }
+}
+
+/// A vertex without a better neighbour, and its height.
+pub(super) fn nearest_summit(slope: Slope<'_>, dir: DVec3, start: VertexId) -> (VertexId, f64) {
+    let (mut at, mut value) = (start, slope.height(dir, start));
+    loop {
+        let (best, height) = slope.best_neighbor(dir, at);
+        if height <= value {
+            return (at, value);
+        }
+        (at, value) = (best, height);
     }
 }
 
@@ -82,8 +116,10 @@ pub(super) fn extreme_vertices<const N: usize>(
     for (i, &dir) in dirs.iter().enumerate() {
         let start = starts[i];
         let (best, height) = slope.best_neighbor(dir, start);
-        let is_better = height > slope.height(dir, start);
-        arrived[i] = !is_better & !slope.graph.star(start).is_fragile();
+        let value = slope.height(dir, start);
+        let is_better = height > value;
+        let is_above = value >= dir.dot(slope.center);
+        arrived[i] = !is_better & is_above & !slope.graph.star(start).is_fragile();
         vertices[i] = if is_better { best } else { start };
     }
     for (i, &dir) in dirs.iter().enumerate() {
@@ -136,48 +172,69 @@ impl Slope<'_> {
         highest
     }
 
-    /// A vertex above the plateau around `start`, or `None` if the plateau is the maximum.
+    /// Whether a neighbour that is lower by `fall` may hide a way up.
+    #[inline(always)]
+    fn is_hardly_lower(&self, dir: DVec3, fall: f64) -> bool {
+        let dip = DIP * self.radius;
+        fall * fall <= dip * dip * dir.length_squared()
+    }
+
+    /// Looks for a vertex above the plateau around `start`.
     #[cold]
     #[inline(never)]
-    fn leave_plateau(&self, dir: DVec3, start: VertexId) -> Option<VertexId> {
-        let tie = PLATEAU * self.radius * dir.length();
+    fn search_plateau(&self, dir: DVec3, start: VertexId) -> Plateau {
+        let [tie, dip] = [PLATEAU, DIP].map(|share| share * self.radius * dir.length());
         let level = self.height(dir, start);
-        let mut plateau = vec![start];
-        let mut next = 0;
-        while let Some(&v) = plateau.get(next) {
-            for w in self.graph.neighbors(v) {
-                let height = self.height(dir, w.into());
+        let mut plateau = [start; SMALL_PLATEAU];
+        let (mut next, mut count) = (0, 1);
+        while next < count {
+            for w in self.graph.neighbors(plateau[next]).map(VertexId::from) {
+                let height = self.height(dir, w);
                 if height > level + tie {
-                    return Some(w.into());
+                    return Plateau::Exit(w);
                 }
-                if height >= level - tie && !plateau.contains(&w.into()) {
-                    plateau.push(w.into());
+                if height >= level - dip && !plateau[..count].contains(&w) {
+                    if count == SMALL_PLATEAU {
+                        return Plateau::Large;
+                    }
+                    plateau[count] = w;
+                    count += 1;
                 }
             }
             next += 1;
         }
-        None
+        Plateau::Top
+    }
+
+    /// The highest of all vertices, or `preferred` if that ties.
+    #[cold]
+    #[inline(never)]
+    fn scan(&self, dir: DVec3, preferred: VertexId) -> VertexId {
+        let mut highest = Highest::new(dir);
+        for (number, chunk) in self.points.chunks(LANES).enumerate() {
+            let corners = array::from_fn(|lane| chunk.get(lane).unwrap_or(&chunk[0]));
+            highest.look_at(number * LANES, coordinates(corners));
+        }
+        let top = highest.top();
+        let tie = PLATEAU * self.radius * dir.length();
+        let is_above = top.value > self.height(dir, preferred) + tie;
+        // What fills up the last four repeats its first one, which is preferred among ties.
+        if is_above {
+            top.name as VertexId
+        } else {
+            preferred
+        }
     }
 }
 
-/// Whether a tie at a vertex may hide a way up: inside of a face or of a straight edge (with fewer
-/// than three faces), with a very short edge, or on a face of many corners.
-pub(super) fn is_fragile(
+/// Whether a vertex has an edge so short that its ends' rounding hides a way up.
+pub(super) fn has_short_edge(
     points: &[DVec3],
     graph: &EdgeGraph,
     radius: f64,
-    face_len: impl Fn(u16) -> usize,
     vertex: VertexId,
 ) -> bool {
     let shortest = SHORT_EDGE * radius;
     let to = |w: u16| points[vertex as usize].distance_squared(points[w as usize]);
-    let mut neighbors = graph.neighbors(vertex);
-    let short = neighbors.any(|w| to(w) < shortest * shortest);
-    let mut faces = graph.faces_at(vertex).flatten();
-    let large = faces.clone().any(|f| face_len(f) >= LARGE_FACE);
-    let first = faces.next();
-    let mut others = faces.filter(|&f| Some(f) != first);
-    let second = others.next();
-    let corner = others.any(|f| Some(f) != second);
-    short || !corner || large
+    graph.neighbors(vertex).any(|w| to(w) < shortest * shortest)
 }

@@ -95,6 +95,7 @@ impl Hull {
         Slope {
             points: &self.points,
             graph: &self.graph,
+            center: self.center,
             radius: self.radius,
         }
     }

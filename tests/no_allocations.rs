@@ -1,0 +1,93 @@
+//! No stage allocates once its buffers have grown: counted while coins rest on a box.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::f32::consts::TAU;
+
+use glam::Vec3;
+use isa_gjk::{HullShape, IsaGjkDispatcher};
+use parry3d::math::{Pose, Rotation};
+use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
+use parry3d::shape::SharedShape;
+
+/// Counts the allocations of each thread.
+struct Counting;
+
+thread_local! {
+    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
+}
+
+// SAFETY: the system's allocator does all the work.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.with(|count| count.set(count.get() + 1));
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+fn coin(sides: usize) -> Vec<Vec3> {
+    let corner = |i: usize| {
+        let (sin, cos) = (TAU * i as f32 / sides as f32).sin_cos();
+        [-0.2, 0.2].map(|y| Vec3::new(cos, y, sin))
+    };
+    (0..sides).flat_map(corner).collect()
+}
+
+/// Allocations of 200 updates after 20 others.
+fn allocations(shapes: [&SharedShape; 2], pose: impl Fn(usize) -> Pose) -> usize {
+    let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut update = |frame| {
+        let [a, b] = shapes;
+        dispatcher
+            .contact_manifolds(&pose(frame), &**a, &**b, 0.02, &mut manifolds, &mut None)
+            .expect("supported");
+        assert!(!manifolds[0].points.is_empty());
+    };
+    (0..20).for_each(&mut update);
+    let before = ALLOCATIONS.get();
+    (20..220).for_each(&mut update);
+    ALLOCATIONS.get() - before
+}
+
+#[test]
+fn resting_coins_allocate_nothing() {
+    let ground = SharedShape::cuboid(3.0, 1.0, 3.0);
+    for sides in [24, 40, 64, 128, 500] {
+        let plain = SharedShape::convex_hull(&coin(sides)).expect("a coin");
+        let prepared = HullShape::from_points(&coin(sides)).expect("a coin");
+        for coin in [plain, SharedShape::new(prepared)] {
+            for spin in [0.0, 1e-3] {
+                let pose = |frame: usize| {
+                    let tilt = 1e-6 * (frame % 7) as f32;
+                    let turn =
+                        Rotation::from_scaled_axis(Vec3::new(tilt, spin * frame as f32, 0.0));
+                    Pose::from_parts(Vec3::new(0.3, 1.199, 0.1), turn)
+                };
+                for shapes in [[&ground, &coin], [&coin, &coin]] {
+                    let lift = if shapes[0].as_cuboid().is_some() {
+                        0.0
+                    } else {
+                        -0.8
+                    };
+                    let pose = |frame| {
+                        let pose = pose(frame);
+                        Pose::from_parts(pose.translation + Vec3::Y * lift, pose.rotation)
+                    };
+                    assert_eq!(
+                        allocations(shapes, pose),
+                        0,
+                        "{sides} sides, turning by {spin}"
+                    );
+                }
+            }
+        }
+    }
+}
