@@ -14,7 +14,11 @@ use glam::Vec2;
 use wide::f32x4;
 
 use super::polygon::{LANES, Polygon, Side};
+use super::sectors;
 use crate::both::both;
+
+/// From so many pairs of sides on, only near ones are compared.
+const MANY: usize = 1200;
 
 /// Where a corner of the intersection comes from. Indices are into the polygons as given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,9 +50,16 @@ impl Polygons {
         self.corners.count = 0;
         if self.window.count <= LANES && (3..=LANES).contains(&subject) {
             self.intersect_few();
-        } else {
+        } else if self.window.count * subject < MANY || !self.intersect_sectors() {
             self.intersect_many();
         }
+    }
+
+    /// Only near corners and sides are compared; `false` for polygons that are too thin for that.
+    #[inline(never)]
+    fn intersect_sectors(&mut self) -> bool {
+        let is_area = self.window.count > 2 && self.subject.count > 2;
+        is_area && sectors::intersect(&self.window, &self.subject, &mut self.corners)
     }
 
     /// Gathers all corners together.
@@ -165,6 +176,18 @@ impl Corners {
             self.sources[self.count] = (source + i) as u32;
             self.count += 1;
         }
+    }
+
+    /// Adds one corner.
+    #[inline(always)]
+    pub fn push(&mut self, at: Vec2, source: usize) {
+        if self.sources.len() <= self.count {
+            self.grow(self.count + 1);
+        }
+        self.x[self.count] = at.x;
+        self.y[self.count] = at.y;
+        self.sources[self.count] = source as u32;
+        self.count += 1;
     }
 
     /// Makes room for so many and more, in fours, as they are read.
@@ -316,6 +339,77 @@ mod tests {
         }
         found.retain(|&p| is_inside(p, a, 1e-12) && is_inside(p, b, 1e-12));
         found
+    }
+
+    /// Corners on straight sides, as divided flat ends have: each side of an outline `times`.
+    fn divided(outline: &[Vec2], times: usize) -> Vec<Vec2> {
+        let ends = outline.iter().cycle().skip(1);
+        let along = |(a, b): (&Vec2, &Vec2)| {
+            let (a, b) = (*a, *b);
+            (0..times).map(move |i| a.lerp(b, i as f32 / times as f32))
+        };
+        outline.iter().zip(ends).flat_map(along).collect()
+    }
+
+    /// Polygons of many corners, which only near sides are compared of; thin ones, equal ones, and such
+    /// as have straight runs. No corner is missing that is found when all sides are compared.
+    #[test]
+    fn near_sides_are_enough() {
+        let mut dice = oorandom::Rand64::new(3);
+        let mut by_sectors = 0;
+        for round in 0..600 {
+            let counts = [(); 2].map(|()| dice.rand_range(3..90) as usize);
+            let [mut window, mut subject] = counts.map(|count| ellipse(count, &mut dice));
+            let tiny = Vec2::splat(6e-8 * (round % 7) as f32);
+            match round % 6 {
+                0 => subject = window.iter().map(|&p| p + tiny).collect(),
+                1 => window = divided(&SQUARE.map(Vec2::from), 20),
+                2 => {
+                    window = divided(&window[..3], 30);
+                    subject = divided(&subject[..3], 25);
+                }
+                3 => subject.iter_mut().for_each(|p| p.y = 0.3 + 1e-3 * p.y),
+                4 => {
+                    let turn = Vec2::from_angle(dice.rand_float() as f32);
+                    window = divided(&SQUARE.map(Vec2::from), 20);
+                    window.iter_mut().for_each(|p| *p = p.rotate(turn));
+                    subject = window.iter().map(|p| *p + tiny).collect();
+                }
+                _ => {}
+            }
+            subject.reverse();
+            let mut polygons = Polygons {
+                window: polygon(&window),
+                subject: polygon(&subject),
+                ..Polygons::default()
+            };
+            let found = |polygons: &Polygons| -> Vec<(Vec2, Tag)> {
+                let corners = 0..polygons.corners.count;
+                let corner = |i| (polygons.corners.at(i), polygons.tag(i));
+                corners.map(corner).collect()
+            };
+            if !polygons.intersect_sectors() {
+                continue;
+            }
+            by_sectors += 1;
+            let near = found(&polygons);
+            polygons.corners.count = 0;
+            polygons.intersect_many();
+            let all = found(&polygons);
+            let is_found = |at: Vec2| near.iter().any(|other| other.0.distance(at) < 2e-6);
+            let missing = all.iter().find(|corner| !is_found(corner.0));
+            assert_eq!(missing, None, "round {round}");
+            // Far sides in a straight run may strike a corner by their rounding.
+            subject.reverse();
+            for (at, tag) in near {
+                let inside = |polygon| is_inside(at.as_dvec2(), polygon, 4e-6);
+                assert!(
+                    inside(&window) && inside(&subject),
+                    "round {round}: {at} of {tag:?}"
+                );
+            }
+        }
+        assert!(by_sectors > 500, "only {by_sectors}");
     }
 
     /// Against brute force in f64; also for equal polygons, and those that are turned or shifted by a

@@ -14,6 +14,7 @@ mod patch;
 mod plane;
 mod polygon;
 mod reduce;
+mod sectors;
 
 use glam::{DVec3, Vec2};
 

@@ -94,6 +94,18 @@ impl Polygon {
         self.count.next_multiple_of(LANES)
     }
 
+    /// The side that starts at a corner.
+    #[inline(always)]
+    pub fn side(&self, corner: usize) -> Line {
+        let (row, lane) = (&self.rows[corner / LANES], corner % LANES);
+        let of_lane = |row: &f32x4| row.as_array()[lane];
+        Line {
+            at: Vec2::new(of_lane(&row.x), of_lane(&row.y)),
+            along: Vec2::new(of_lane(&row.along_x), of_lane(&row.along_y)),
+            slack: of_lane(&row.slack),
+        }
+    }
+
     /// The bits of those corners of a row that do not fill up.
     #[inline(always)]
     pub fn real(&self, row: usize) -> u32 {
@@ -147,6 +159,38 @@ impl Row {
     pub fn holds(&self, x: f32x4, y: f32x4) -> bool {
         let heights = (x - self.x) * self.along_y - (y - self.y) * self.along_x;
         heights.simd_ge(-self.slack).all()
+    }
+}
+
+/// A side of a polygon, or the line through it.
+#[derive(Clone, Copy)]
+pub(super) struct Line {
+    pub at: Vec2,
+    pub along: Vec2,
+    /// How far below it still counts as inside, as a height that is multiplied by its length.
+    pub slack: f32,
+}
+
+impl Line {
+    /// How far left of it a point is, multiplied by its length.
+    #[inline(always)]
+    pub fn height(&self, p: Vec2) -> f32 {
+        self.along.perp_dot(p - self.at)
+    }
+
+    /// Where the side `other` crosses this one.
+    #[inline(always)]
+    pub fn crossing(&self, other: &Self) -> Option<Vec2> {
+        let from = other.at - self.at;
+        let heights = [from, from + other.along].map(|p| self.along.perp_dot(p));
+        if (heights[0] < 0.0) == (heights[1] < 0.0) {
+            return None;
+        }
+        let at = from + other.along * (heights[0] / (heights[0] - heights[1]));
+        // Along this side, from 0 to its length squared.
+        let place = at.dot(self.along);
+        let end = self.along.length_squared() + self.slack;
+        (place >= -self.slack && place <= end).then_some(self.at + at)
     }
 }
 

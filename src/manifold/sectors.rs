@@ -1,0 +1,134 @@
+//! Intersection of two convex polygons of many corners, in time linear in them.
+//!
+//! Around a point inside of a polygon, each of its sides has a sector. As one goes around the other
+//! polygon, the sectors follow each other, forth or back: a corner need only be compared with the side
+//! of its sector, and a side with those of the sectors from its one end to its other. Where
+//! rounding chooses among neighbouring sectors, the sides beside count as well.
+
+use glam::Vec2;
+
+use super::clip::Corners;
+use super::polygon::{Line, Polygon};
+
+/// The sectors of a polygon, and the one that was entered last.
+struct Sectors<'p> {
+    polygon: &'p Polygon,
+    center: Vec2,
+    /// 1 if it is counter-clockwise, -1 if it is clockwise.
+    turn: f32,
+    at: usize,
+}
+
+impl<'p> Sectors<'p> {
+    /// `None` for a polygon that is too thin.
+    fn new(polygon: &'p Polygon, turn: f32) -> Option<Self> {
+        let center = center(polygon)?;
+        let sectors = Self {
+            polygon,
+            center,
+            turn,
+            at: 0,
+        };
+        let mut sides = (0..polygon.count).map(|i| polygon.side(i));
+        let is_inside = sides.all(|side| side.height(center) * turn > side.slack);
+        is_inside.then_some(sectors)
+    }
+
+    fn after(&self, sector: usize, steps: usize) -> usize {
+        let sector = sector + steps;
+        let count = self.polygon.count;
+        if sector < count {
+            sector
+        } else {
+            sector - count
+        }
+    }
+
+    fn holds(&self, sector: usize, p: Vec2) -> bool {
+        let dir = p - self.center;
+        let from = self.polygon.side(sector).at - self.center;
+        let to = self.polygon.side(self.after(sector, 1)).at - self.center;
+        from.perp_dot(dir) * self.turn >= 0.0 && dir.perp_dot(to) * self.turn > 0.0
+    }
+
+    /// Goes to the sector of a point. In the centre any is as good.
+    fn enter(&mut self, p: Vec2) {
+        let mut sectors = 0..self.polygon.count;
+        self.at = sectors.find(|&sector| self.holds(sector, p)).unwrap_or(0);
+    }
+
+    /// Goes on to the sector of `q` as one goes straight from `p`, the point of the present one. The
+    /// sectors on the way, with one more at both ends: the first, and how many there are.
+    fn follow(&mut self, p: Vec2, q: Vec2) -> (usize, usize) {
+        let count = self.polygon.count;
+        let start = self.at;
+        let forth = (p - self.center).perp_dot(q - self.center) * self.turn >= 0.0;
+        let step = if forth { 1 } else { count - 1 };
+        let mut steps = 0;
+        while steps < count && !self.holds(self.at, q) {
+            self.at = self.after(self.at, step);
+            steps += 1;
+        }
+        let first = if forth { start } else { self.at };
+        (self.after(first, count - 1), (steps + 3).min(count))
+    }
+
+    /// Whether a point of the present sector is inside of the polygon.
+    fn is_inside(&self, p: Vec2) -> bool {
+        let beside = [self.polygon.count - 1, 0, 1];
+        beside.into_iter().all(|steps| {
+            let side = self.polygon.side(self.after(self.at, steps));
+            side.height(p) * self.turn >= -side.slack
+        })
+    }
+}
+
+/// Adds the corners of the intersection to `corners`, unless a polygon is too thin for sectors: then
+/// the answer is `false`. Their sources are those of [`Polygons`](super::clip::Polygons).
+pub(super) fn intersect(window: &Polygon, subject: &Polygon, corners: &mut Corners) -> bool {
+    let sectors = [Sectors::new(window, 1.0), Sectors::new(subject, -1.0)];
+    let [Some(mut of_window), Some(mut of_subject)] = sectors else {
+        return false;
+    };
+    let width = subject.width();
+    let subject_source = window.width() * width;
+    let window_source = subject_source + width;
+    of_window.enter(subject.side(0).at);
+    for j in 0..subject.count {
+        let side = subject.side(j);
+        if of_window.is_inside(side.at) {
+            corners.push(side.at, subject_source + j);
+        }
+        let (first, count) = of_window.follow(side.at, side.at + side.along);
+        for steps in 0..count {
+            let i = of_window.after(first, steps);
+            if let Some(at) = window.side(i).crossing(&side) {
+                corners.push(at, i * width + j);
+            }
+        }
+    }
+    of_subject.enter(window.side(0).at);
+    for i in 0..window.count {
+        let side = window.side(i);
+        if of_subject.is_inside(side.at) {
+            corners.push(side.at, window_source + i);
+        }
+        of_subject.follow(side.at, side.at + side.along);
+    }
+    true
+}
+
+/// The centre of a polygon's area.
+fn center(polygon: &Polygon) -> Option<Vec2> {
+    let origin: Line = polygon.side(0);
+    let (mut area, mut moment) = (0.0, Vec2::ZERO);
+    for i in 1..polygon.count - 1 {
+        let side = polygon.side(i);
+        let from = side.at - origin.at;
+        let doubled = from.perp_dot(side.along);
+        area += doubled;
+        moment += (from + from + side.along) * doubled;
+    }
+    let center = origin.at + moment / (3.0 * area);
+    center.is_finite().then_some(center)
+}
