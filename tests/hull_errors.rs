@@ -412,3 +412,50 @@ fn a_thousand_vertices_are_built_in_no_time() {
     assert_eq!(whole.points().len(), hull.points().len());
     assert!(from_triangles.as_secs_f64() < 1.0, "{from_triangles:?}");
 }
+
+/// All points of a polyhedron are vertices: they are counted before anything is built.
+#[test]
+fn a_polyhedron_of_too_many_points_is_refused_at_once() {
+    let count = 200;
+    let ring = |j: usize| (std::f64::consts::PI * (j as f64 + 0.5) / f64::from(count)).sin_cos();
+    let mut points = Vec::new();
+    for j in 0..count as usize {
+        let (radius, z) = ring(j);
+        for i in 0..count as usize {
+            let (y, x) = (TAU * i as f64 / f64::from(count)).sin_cos();
+            points.push(DVec3::new(radius * x, radius * y, z).as_vec3());
+        }
+    }
+    let polyhedron = parry3d::shape::ConvexPolyhedron::from_convex_hull(&points);
+    let polyhedron = polyhedron.expect("a sphere");
+    assert!(polyhedron.points().len() > 32_768);
+    let start = Instant::now();
+    let refused = Hull::try_from(&polyhedron);
+    assert_eq!(refused.unwrap_err(), HullError::TooManyPoints);
+    let time = start.elapsed();
+    assert!(time.as_millis() < 50, "{time:?}");
+}
+
+/// Whatever the number of sides, while all of its vertices have names.
+#[test]
+fn triangulated_prisms_of_many_sides_are_prepared() {
+    for sides in [1_000, 5_000, 16_384] {
+        for half in [0.2, 0.01] {
+            let corner = |i: u32| {
+                let (y, x) = (TAU * f64::from(i) / f64::from(sides)).sin_cos();
+                [-half, half].map(|z| DVec3::new(x, y, z).as_vec3())
+            };
+            let points: Vec<Vec3> = (0..sides).flat_map(corner).collect();
+            let mut triangles = Vec::new();
+            for i in 0..sides {
+                let (a, b) = (2 * i, 2 * ((i + 1) % sides));
+                triangles.extend([[a, b, a + 1], [b, b + 1, a + 1]]);
+                if a > 0 && b > 0 {
+                    triangles.extend([[1, a + 1, b + 1], [0, b, a]]);
+                }
+            }
+            let built = Hull::from_triangles(points, &triangles).map(|hull| hull.points().len());
+            assert_eq!(built, Ok(2 * sides as usize), "{sides} sides, {half}");
+        }
+    }
+}

@@ -16,7 +16,7 @@ use crate::support::{FaceId, Polytope};
 use crate::tolerance::{BOWL, CONVEXITY, FOLD, THINNEST};
 
 /// The most vertices a hull may have: its at most `2 n - 4` faces must have 16-bit names.
-const MAX_VERTICES: usize = 32_768;
+pub(super) const MAX_VERTICES: usize = 32_768;
 
 impl Hull {
     /// The convex hull of a point cloud, by parry's hull builder.

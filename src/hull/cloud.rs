@@ -1,6 +1,6 @@
 //! The surface of a point cloud's hull, by parry's hull builder.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use glam::{DMat3, DVec3, Vec3};
 
@@ -57,9 +57,16 @@ fn leaves_out(hull: &Hull, points: &[Vec3]) -> bool {
     let height = |face, p: DVec3| hull.face_normal(face).dot(p) - hull.face_offset(face);
     let thick = THICK * hull.radius();
     let is_thin = faces().any(|face| -height(face, hull.center()) < thick);
+    if !is_thin {
+        return false;
+    }
+    // Vertices, of which a large cloud may have nothing else, need no look at all faces.
+    let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
+    let vertices: HashSet<_> = hull.points().iter().map(bits).collect();
     let is_outside =
         |p: &Vec3| faces().any(|face| height(face, p.as_dvec3()) > LEFT_OUT * hull.radius());
-    is_thin && points.iter().any(is_outside)
+    let mut others = points.iter().filter(|p| !vertices.contains(&bits(p)));
+    others.any(is_outside)
 }
 
 /// An affine image of the points with unit covariance; `None` if they span no volume.

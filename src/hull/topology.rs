@@ -10,6 +10,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use glam::{DVec2, DVec3, Vec3};
 use parry3d::shape::ConvexPolyhedron;
 
+use super::build::MAX_VERTICES;
 use super::{Hull, HullError};
 
 /// The hull of a polyhedron; that of its points where its surface is not a convex triangulation of
@@ -21,6 +22,11 @@ impl TryFrom<&ConvexPolyhedron> for Hull {
 
     fn try_from(polyhedron: &ConvexPolyhedron) -> Result<Self, HullError> {
         let points = polyhedron.points();
+        // All of them are vertices, but for those inside of flat sides: a hull builder would leave too
+        // many, and take seconds.
+        if points.len() > MAX_VERTICES {
+            return Err(HullError::TooManyPoints);
+        }
         triangles(polyhedron)
             .and_then(|triangles| Self::in_order(points.to_vec(), &triangles).ok())
             .map_or_else(|| Self::from_points(points), Ok)
