@@ -6,22 +6,13 @@
 //! Each case runs twice in a process of its own under valgrind, over a short and a long part of
 //! its trajectory: the difference is free of the start.
 
-#[path = "shared/hull.rs"]
-mod hull;
-#[path = "shared/trajectory.rs"]
-mod trajectory;
-#[path = "shared/update.rs"]
-mod update;
-
 use std::collections::BTreeMap;
 use std::process::{Command, ExitCode};
 
-use hull::hull;
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::Pose;
 use parry3d::shape::SharedShape;
-use trajectory::{FRAMES, GAPS, VERTICES, trajectory};
-use update::{Manifolds, update};
+use testkit::pair::{FRAMES, GAPS, Manifolds, VERTICES, hull, trajectory, update};
 
 /// What another minor version of the compiler may cost.
 const TOLERANCE: f64 = 0.05;

@@ -1,17 +1,9 @@
 //! Rapier's default dispatcher and ours, asked in turn: whatever else the machine does meanwhile, it
 //! does to both. `cargo bench --bench ratios` prints medians over the turns, as tables.
 
-#[path = "shared/hull.rs"]
-mod hull;
-#[path = "shared/trajectory.rs"]
-mod trajectory;
-#[path = "shared/update.rs"]
-mod update;
-
 use std::hint::black_box;
 use std::time::Instant;
 
-use hull::hull;
 use isa_gjk::IsaGjkDispatcher;
 use isa_gjk::hull_shape::PreparedShapes;
 use oorandom::Rand32;
@@ -21,8 +13,7 @@ use parry3d::query::{
     ShapeCastOptions,
 };
 use parry3d::shape::SharedShape;
-use trajectory::{FRAMES, GAPS, VERTICES, trajectory};
-use update::{Manifolds, update};
+use testkit::pair::{FRAMES, GAPS, Manifolds, VERTICES, hull, trajectory, update};
 
 const TURNS: usize = 101;
 

@@ -21,7 +21,7 @@
 //! 1:1000. The cross-section of longer ones is a few roundings; there it is at most two
 //! [`CONVEXITY`](crate::tolerance::CONVEXITY)` * radius * |d|`. Building refuses the surfaces on
 //! which a climb would lose more: with deeper dents, folds, or two layers. The limits are those
-//! measured in `tests/hill_climbing.rs`.
+//! measured in `tests/kernels/hill_climbing.rs`.
 
 use std::array;
 

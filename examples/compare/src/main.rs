@@ -1,0 +1,144 @@
+//! Steps two equal rapier worlds in turn, one with rapier's own narrow phase and one with
+//! `isa-gjk`, and tells what each cost: `cargo run --release -p compare -- --help`.
+
+mod chart;
+mod files;
+mod measure;
+mod options;
+mod report;
+mod rest;
+mod sweep;
+mod verify;
+
+use std::error::Error;
+use std::fmt::Display;
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::process::ExitCode;
+
+use clap::Parser;
+use indicatif::{ProgressBar, ProgressStyle};
+
+use options::Options;
+use report::Report;
+use rest::Rest;
+use sweep::Sweep;
+
+fn main() -> ExitCode {
+    let options = Options::parse();
+    let outcome = match options.sweep {
+        None if options.until_asleep => until_asleep(&options),
+        None => compare(&options),
+        Some(options::Sweep::Vertices) => sweep(&options),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn compare(options: &Options) -> Result<(), Box<dyn Error>> {
+    let params = options.scene_params(options.vertices)?;
+    let length = options.run_length();
+    // Before the run, so that a wrong path does not cost it.
+    let outputs = Outputs::create(options)?;
+    let progress = progress_bar(options, length.steps() * u64::from(options.repeat));
+    let runs = (0..options.repeat)
+        .map(|_| measure::run(options.scene, &params, length, &progress))
+        .collect::<Result<Vec<_>, _>>()?;
+    progress.finish_and_clear();
+
+    let report = Report::new(options.scene, &params, length, &runs);
+    if let Some(file) = outputs.json {
+        files::write_json(file, &report)?;
+    }
+    if let Some(file) = outputs.csv {
+        files::write_csv(file, &runs)?;
+    }
+    if let Some(path) = &options.chart {
+        chart::frames(path, &report.title(), &runs)?;
+    }
+    print(&report)?;
+    match report.failed_check() {
+        true => Err("a manifold is off by more than the limit: see the table".into()),
+        false => Ok(()),
+    }
+}
+
+fn sweep(options: &Options) -> Result<(), Box<dyn Error>> {
+    let outputs = Outputs::create(options)?;
+    let progress = progress_bar(options, Sweep::steps(options));
+    let sweep = Sweep::run(options, &progress)?;
+    progress.finish_and_clear();
+
+    if let Some(file) = outputs.json {
+        files::write_json(file, &sweep)?;
+    }
+    if let Some(file) = outputs.csv {
+        sweep.write_csv(file)?;
+    }
+    if let Some(path) = &options.chart {
+        chart::sweep(path, &sweep)?;
+    }
+    print(&sweep)
+}
+
+fn until_asleep(options: &Options) -> Result<(), Box<dyn Error>> {
+    let outputs = Outputs::create(options)?;
+    let frames = options.frames_until_asleep();
+    let steps = 2 * frames as u64 * u64::from(options.seeds);
+    let progress = progress_bar(options, steps);
+    let params = options.scene_params(options.vertices)?;
+    let rest = Rest::run(options.scene, &params, options.seeds, frames, &progress)?;
+    progress.finish_and_clear();
+
+    if let Some(file) = outputs.json {
+        files::write_json(file, &rest)?;
+    }
+    if let Some(file) = outputs.csv {
+        rest.write_csv(file)?;
+    }
+    if let Some(path) = &options.chart {
+        chart::awake(path, &rest)?;
+    }
+    print(&rest)
+}
+
+/// The files that are asked for.
+struct Outputs {
+    json: Option<BufWriter<File>>,
+    csv: Option<BufWriter<File>>,
+}
+
+impl Outputs {
+    fn create(options: &Options) -> Result<Self, String> {
+        // The chart is written by its name; this proves that it can be.
+        files::create(options.chart.as_deref())?;
+        Ok(Self {
+            json: files::create(options.json.as_deref())?,
+            csv: files::create(options.csv.as_deref())?,
+        })
+    }
+}
+
+fn print(table: &impl Display) -> Result<(), Box<dyn Error>> {
+    match write!(io::stdout().lock(), "{table}") {
+        // Whoever reads us has seen enough, as `head` does.
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => Ok(result?),
+    }
+}
+
+fn progress_bar(options: &Options, steps: u64) -> ProgressBar {
+    if options.quiet {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(steps);
+    match ProgressStyle::with_template("{wide_bar} {pos}/{len} steps, {eta} left") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

@@ -1,0 +1,18 @@
+//! What tests, benches and examples share: exact cases, an oracle in f64, generators of hulls, scenes
+//! of whole worlds, and reports. Not published.
+
+pub mod bytes;
+pub mod cases;
+pub mod generate;
+pub mod memory;
+pub mod oracle;
+pub mod pair;
+pub mod pose;
+pub mod quality;
+pub mod report;
+pub mod scanned;
+pub mod scene;
+pub mod scenes;
+pub mod twins;
+pub mod world;
+pub mod zoo;

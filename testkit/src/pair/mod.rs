@@ -1,0 +1,9 @@
+//! A pair of hulls on a coherent trajectory, as the benches of pairs measure it.
+
+mod hull;
+mod trajectory;
+mod update;
+
+pub use hull::hull;
+pub use trajectory::{FRAMES, GAPS, PREDICTION, VERTICES, trajectory};
+pub use update::{Manifolds, update};

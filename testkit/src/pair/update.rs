@@ -1,0 +1,31 @@
+//! A manifold update as rapier asks for it.
+
+use std::hint::black_box;
+
+use parry3d::math::Pose;
+use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
+use parry3d::shape::SharedShape;
+
+use super::trajectory::PREDICTION;
+
+pub type Manifolds = Vec<ContactManifold<(), ()>>;
+
+/// Brings the manifolds of a pair up to date.
+#[inline]
+pub fn update(
+    dispatcher: &impl PersistentQueryDispatcher,
+    [a, b]: &[SharedShape; 2],
+    pose: &Pose,
+    manifolds: &mut Manifolds,
+) {
+    dispatcher
+        .contact_manifolds(
+            black_box(pose),
+            &**a,
+            &**b,
+            PREDICTION,
+            manifolds,
+            &mut None,
+        )
+        .expect("both dispatchers know these shapes");
+}

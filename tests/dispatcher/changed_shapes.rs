@@ -1,0 +1,121 @@
+//! Shapes come and go, are mutated in place, and are given the addresses of shapes that died: no
+//! answer may come from the dead.
+
+use isa_gjk::IsaGjkDispatcher;
+use parry3d::math::Vector;
+use parry3d::shape::{ConvexPolyhedron, SharedShape};
+use testkit::cases::Hull;
+use testkit::generate::{Dice, hull_of};
+use testkit::memory::Memory;
+use testkit::report::Report;
+use testkit::scene::random_scene;
+
+/// Small and large hulls are known again in different ways.
+const SIZES: [usize; 2] = [30, 200];
+
+/// New hulls with the same number of corners, so that the allocator hands out old addresses.
+#[test]
+fn replaced_shapes_are_answered_as_they_are() {
+    SIZES.into_iter().for_each(check_replaced_shapes);
+}
+
+fn check_replaced_shapes(corners: usize) {
+    let mut report = Report::new(format!("replaced shapes of {corners} corners"));
+    let mut dice = Dice::new(6);
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut memory = Memory::default();
+    let mut addresses = Vec::new();
+    for turn in 0..200 {
+        let [a, b] = [(); 2].map(|()| dice.hull(corners, 1.0));
+        addresses.push(std::ptr::from_ref(&*a.shape).addr());
+        let scene = random_scene(&mut dice, &a, &b, 0.9);
+        let id = format!("turn {turn}");
+        let manifold = scene.update(&dispatcher, &mut memory);
+        report.add("manifold", &id, scene.judge(manifold));
+        report.add("stateless", &id, scene.judge_stateless(&dispatcher));
+        memory.workspace = None;
+    }
+    report.conclude();
+    let turns = addresses.len();
+    addresses.sort_unstable();
+    addresses.dedup();
+    assert!(addresses.len() < turns, "the allocator reused no address");
+}
+
+/// Changes the polyhedron inside `shape` where it lies.
+fn mutate(shape: &mut SharedShape, change: impl FnOnce(&mut ConvexPolyhedron)) {
+    let before = std::ptr::from_ref(&**shape).addr();
+    let polyhedron = shape
+        .make_mut()
+        .as_convex_polyhedron_mut()
+        .expect("a convex polyhedron");
+    change(polyhedron);
+    let after = std::ptr::from_ref(&**shape).addr();
+    assert_eq!(before, after, "the shape did not stay in place");
+}
+
+/// A hull put in the place of another.
+fn replace_in_place(hull: &mut Hull, other: Hull) {
+    let new = other
+        .shape
+        .as_convex_polyhedron()
+        .expect("a convex polyhedron")
+        .clone();
+    mutate(&mut hull.shape, |polyhedron| *polyhedron = new);
+    hull.solid = other.solid;
+}
+
+/// A hull scaled without moving even its list of points.
+fn scale_in_place(hull: &mut Hull, scale: Vector) {
+    let stand_in = hull_of(&[Vector::ZERO, Vector::X, Vector::Y, Vector::Z]);
+    let stand_in = stand_in
+        .expect("a tetrahedron is convex")
+        .shape
+        .as_convex_polyhedron()
+        .expect("a convex polyhedron")
+        .clone();
+    let mut points = Vec::new();
+    mutate(&mut hull.shape, |polyhedron| {
+        let scaled = std::mem::replace(polyhedron, stand_in)
+            .scaled(scale)
+            .expect("a scaled hull");
+        points = scaled.points().to_vec();
+        *polyhedron = scaled;
+    });
+    hull.solid = hull.solid.with_points(points.iter().map(|p| p.as_dvec3()));
+}
+
+#[test]
+fn shapes_mutated_in_place_are_answered_as_they_are() {
+    SIZES.into_iter().for_each(check_shapes_mutated_in_place);
+}
+
+fn check_shapes_mutated_in_place(corners: usize) {
+    let mut report = Report::new(format!("shapes of {corners} corners mutated in place"));
+    let mut dice = Dice::new(7);
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut memory = Memory::default();
+    let [mut a, b] = [(); 2].map(|()| dice.hull(corners, 1.0));
+    for turn in 0..150 {
+        let route = if turn % 3 == 0 {
+            replace_in_place(&mut a, dice.hull(corners, 1.0));
+            "replaced"
+        } else {
+            let scale = Vector::splat(if turn % 3 == 1 { 1.5 } else { 0.5 });
+            scale_in_place(&mut a, scale * Vector::new(1.0, 0.9, 1.1));
+            "scaled"
+        };
+        let reach = 0.5 * (a.solid.diameter() + b.solid.diameter());
+        let scene = random_scene(&mut dice, &a, &b, reach);
+        let id = format!("turn {turn}");
+        let manifold = scene.update(&dispatcher, &mut memory);
+        report.add(&format!("{route}, manifold"), &id, scene.judge(manifold));
+        report.add(
+            &format!("{route}, stateless"),
+            &id,
+            scene.judge_stateless(&dispatcher),
+        );
+        memory.workspace = None;
+    }
+    report.conclude();
+}

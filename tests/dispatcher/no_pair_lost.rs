@@ -1,0 +1,169 @@
+//! Whoever plugs the dispatcher in must not lose a single contact by it.
+//!
+//! rapier throws the result of a narrow-phase query away, so a pair that the dispatcher does not
+//! support falls through the floor in silence, and parry's dispatcher hands itself, not us, to
+//! the routines for compounds, meshes, heightfields and voxels. So every shape meets every
+//! shape: the dispatcher supports exactly what parry supports, finds contacts wherever parry
+//! does, and passes every pair without a convex hull through untouched, to the last bit. Of compounds
+//! only the parts are: we find them ourselves, and their poses may be rounded otherwise.
+
+use std::fmt::Debug;
+
+use isa_gjk::IsaGjkDispatcher;
+use parry3d::math::{Pose, Real, Rotation, Vector};
+use parry3d::query::details::ShapeCastOptions;
+use parry3d::query::{
+    DefaultQueryDispatcher, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
+};
+use testkit::memory::{Manifold, Memory};
+use testkit::zoo::{Exhibit, poses, zoo};
+
+const PREDICTION: Real = 0.1;
+
+/// A frame later: moved by less than a hundredth.
+fn nudged(pose: &Pose) -> Pose {
+    let turn = Rotation::from_scaled_axis(Vector::new(0.004, -0.002, 0.003));
+    Pose::from_parts(
+        pose.translation + Vector::new(-0.002, -0.003, 0.001),
+        turn * pose.rotation,
+    )
+}
+
+/// Every ordered pair of shapes, but for those that make parry itself panic.
+fn pairs(zoo: &[Exhibit]) -> impl Iterator<Item = [&Exhibit; 2]> {
+    zoo.iter()
+        .flat_map(move |first| zoo.iter().map(move |second| [first, second]))
+        .filter(|[first, second]| !parry_panics(first.name, second.name))
+}
+
+/// An infinite shape meets one made of finitely many cells.
+fn parry_panics(first: &str, second: &str) -> bool {
+    let infinite = |name| name == "half-space";
+    let cells = |name| name == "voxels" || name == "heightfield";
+    (infinite(first) && cells(second)) || (cells(first) && infinite(second))
+}
+
+fn contacts(
+    dispatcher: &impl PersistentQueryDispatcher<(), ()>,
+    pair: [&Exhibit; 2],
+    pose: &Pose,
+    memory: &mut Memory,
+) -> bool {
+    let [first, second] = pair;
+    dispatcher
+        .contact_manifolds(
+            pose,
+            &*first.shape,
+            &*second.shape,
+            PREDICTION,
+            &mut memory.manifolds,
+            &mut memory.workspace,
+        )
+        .is_ok()
+}
+
+/// The distance of the deepest point of all manifolds.
+fn deepest(manifolds: &[Manifold]) -> Option<Real> {
+    manifolds
+        .iter()
+        .filter_map(|m| m.find_deepest_contact())
+        .map(|point| point.dist)
+        .reduce(Real::min)
+}
+
+/// Equal to the last bit: floats print in as many digits as tell them apart.
+fn assert_same(ours: &impl Debug, theirs: &impl Debug, what: &str) {
+    assert_eq!(format!("{ours:?}"), format!("{theirs:?}"), "{what}");
+}
+
+/// The same parts meet, as deeply.
+fn assert_near(ours: &[Manifold], theirs: &[Manifold], what: &str) {
+    let [ours, theirs] = [ours, theirs].map(|manifolds| {
+        let deepest =
+            |m: &Manifold| Some((m.subshape1, m.subshape2, m.find_deepest_contact()?.dist));
+        // At the very edge of the prediction either answer is right.
+        let near = manifolds.iter().filter_map(deepest);
+        let mut near: Vec<_> = near.filter(|&(.., dist)| dist < 0.9 * PREDICTION).collect();
+        near.sort_by_key(|&(part_1, part_2, _)| (part_1, part_2));
+        near
+    });
+    let is_near = ours.len() == theirs.len()
+        && ours
+            .iter()
+            .zip(&theirs)
+            .all(|(a, b)| (a.0, a.1) == (b.0, b.1) && (a.2 - b.2).abs() < 1e-4);
+    assert!(is_near, "{what}: {ours:?}, parry {theirs:?}");
+}
+
+#[test]
+fn contacts_are_found_wherever_parry_finds_them() {
+    let (mut checked, mut in_contact) = (0, 0);
+    for pair in pairs(&zoo()) {
+        for pose in poses() {
+            let dispatcher = IsaGjkDispatcher::default();
+            let (mut ours, mut theirs) = (Memory::default(), Memory::default());
+            for pose in [pose, nudged(&pose)] {
+                let what = format!("{} / {} at {pose:?}", pair[0].name, pair[1].name);
+                let we_can = contacts(&dispatcher, pair, &pose, &mut ours);
+                let they_can = contacts(&DefaultQueryDispatcher, pair, &pose, &mut theirs);
+                assert_eq!(we_can, they_can, "supported: {what}");
+                if pair.iter().any(|exhibit| exhibit.has_hull) {
+                    // Ours to answer.
+                } else if pair.iter().any(|exhibit| exhibit.name == "compound") {
+                    assert_near(&ours.manifolds, &theirs.manifolds, &what);
+                } else {
+                    assert_same(&ours.manifolds, &theirs.manifolds, &what);
+                }
+                checked += 1;
+                // At the very edge of the prediction either answer is right.
+                if deepest(&theirs.manifolds).is_some_and(|dist| dist < 0.9 * PREDICTION) {
+                    assert!(deepest(&ours.manifolds).is_some(), "lost: {what}");
+                    in_contact += 1;
+                }
+            }
+        }
+    }
+    let share = f64::from(in_contact) / f64::from(checked);
+    assert!((0.2..0.9).contains(&share), "the zoo hardly meets: {share}");
+}
+
+#[test]
+fn scene_queries_are_supported_wherever_parry_supports_them() {
+    let ours = IsaGjkDispatcher::default();
+    let theirs = DefaultQueryDispatcher;
+    for pair in pairs(&zoo()) {
+        let (g1, g2) = (&*pair[0].shape, &*pair[1].shape);
+        for pose in poses().iter().step_by(5) {
+            let agree = |ours: String, theirs: String, query: &str| {
+                let what = format!("{query}, {} / {} at {pose:?}", pair[0].name, pair[1].name);
+                if pair.iter().any(|exhibit| exhibit.has_hull) {
+                    let supported = |answer: &str| answer.starts_with("Ok");
+                    assert_eq!(supported(&ours), supported(&theirs), "{what}");
+                } else {
+                    assert_eq!(ours, theirs, "{what}");
+                }
+            };
+            macro_rules! compare {
+                ($query:ident $arguments:tt) => {
+                    agree(
+                        format!("{:?}", ours.$query $arguments),
+                        format!("{:?}", theirs.$query $arguments),
+                        stringify!($query),
+                    )
+                };
+            }
+            let still = NonlinearRigidMotion::identity();
+            let spin = Vector::new(0.1, 0.2, 0.3);
+            let moving = NonlinearRigidMotion::new(*pose, Vector::ZERO, -pose.translation, spin);
+            let options = ShapeCastOptions::default();
+            compare!(intersection_test(pose, g1, g2));
+            compare!(distance(pose, g1, g2));
+            compare!(contact(pose, g1, g2, PREDICTION));
+            compare!(closest_points(pose, g1, g2, PREDICTION));
+            compare!(cast_shapes(pose, -pose.translation, g1, g2, options));
+            compare!(cast_shapes_nonlinear(
+                &still, g1, &moving, g2, 0.0, 1.0, true
+            ));
+        }
+    }
+}

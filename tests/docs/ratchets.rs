@@ -1,0 +1,118 @@
+//! Habits that are to go. Each limit is what there was when it was last lowered: lower it with
+//! the code, and never raise it.
+
+use crate::{files, lines};
+
+/// Names of our own for what has a name in the literature, or none that helps a reader.
+const PRIVATE_WORDS: [&str; 15] = [
+    "dice",
+    "Dice",
+    "Besides",
+    "Shell",
+    "Shells",
+    "Slope",
+    "Star",
+    "Seen",
+    "Trail",
+    "Top",
+    "heirs",
+    "orphans",
+    "Fan",
+    "Workbench",
+    "Span",
+];
+/// Lines of a file that one still overlooks.
+const LONG_FILE: usize = 300;
+
+/// Fails with all places if there are more than `limit`.
+fn at_most(limit: usize, what: &str, places: &[String]) {
+    assert!(
+        places.len() <= limit,
+        "{} {what}, and at most {limit} are allowed:\n{}",
+        places.len(),
+        places.join("\n")
+    );
+}
+
+/// Places in `src` of lines that `is_meant`, by the line and the three before it.
+fn places(is_meant: impl Fn(&str, &[&str]) -> bool) -> Vec<String> {
+    let mut found = Vec::new();
+    for (path, text) in files("src", "rs") {
+        let all: Vec<&str> = text.lines().collect();
+        for (number, line) in lines(&text) {
+            if is_meant(line, &all[number.saturating_sub(4)..number - 1]) {
+                found.push(format!("{path}:{number}: {}", line.trim()));
+            }
+        }
+    }
+    found
+}
+
+/// Files in `src` with a line that `is_meant`.
+fn files_with(is_meant: impl Fn(&str) -> bool) -> Vec<String> {
+    files("src", "rs")
+        .into_iter()
+        .filter(|(_, text)| text.lines().any(&is_meant))
+        .map(|(path, _)| path)
+        .collect()
+}
+
+fn words(line: &str) -> impl Iterator<Item = &str> {
+    line.split(|c: char| !c.is_alphanumeric() && c != '_')
+}
+
+#[test]
+fn forced_inlining_has_a_reason() {
+    let found = places(|line, before| {
+        line.contains("#[inline(always)]") && !before.iter().any(|line| line.contains("// perf:"))
+    });
+    at_most(137, "`inline(always)` without a `// perf:` note", &found);
+}
+
+#[test]
+fn few_files_know_simd() {
+    let found = files_with(|line| line.starts_with("use wide"));
+    at_most(14, "files import `wide`", &found);
+}
+
+#[test]
+fn options_are_not_nested() {
+    let found = places(|line, _| line.contains("Option<Option<"));
+    at_most(8, "nested options", &found);
+}
+
+#[test]
+fn tolerances_are_in_one_file() {
+    let is_float = |line: &str| {
+        line.contains("const ")
+            && [": f32 =", ": f64 =", ": Real ="]
+                .iter()
+                .any(|t| line.contains(t))
+    };
+    let found: Vec<_> = places(|line, _| is_float(line))
+        .into_iter()
+        .filter(|place| !place.contains("tolerance.rs"))
+        .collect();
+    at_most(21, "float constants outside tolerance.rs", &found);
+}
+
+#[test]
+fn few_files_know_the_order_of_a_pair() {
+    let found = files_with(|line| words(line).any(|word| word == "swapped"));
+    at_most(12, "files with the word `swapped`", &found);
+}
+
+#[test]
+fn names_are_those_of_the_field() {
+    let found = places(|line, _| words(line).any(|word| PRIVATE_WORDS.contains(&word)));
+    at_most(146, "lines with private words", &found);
+}
+
+#[test]
+fn files_are_short() {
+    let long = files("src", "rs").into_iter().filter_map(|(path, text)| {
+        let count = text.lines().count();
+        (count > LONG_FILE).then(|| format!("{path}: {count} lines"))
+    });
+    at_most(7, "files are long", &long.collect::<Vec<_>>());
+}

@@ -1,0 +1,285 @@
+//! Climbs from every vertex of hulls whose flat sides hold inner vertices, against a scan in f64: such
+//! sides are dented by the rounding of their vertices, and dents are false summits.
+
+use std::collections::HashMap;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use glam::{DQuat, DVec3, EulerRot, Vec3};
+use isa_gjk::stats::Cost;
+use isa_gjk::support::{FaceId, Polytope, Support, VertexId};
+use isa_gjk::tolerance::PLATEAU;
+use isa_gjk::{Hull, HullError, HullShape, IsaGjkDispatcher};
+use parry3d::math::Pose;
+use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
+use parry3d::shape::SharedShape;
+use testkit::generate::Dice;
+
+/// A surface: points and triangles.
+type Mesh = (Vec<DVec3>, Vec<[u32; 3]>);
+
+/// A block whose upper and lower sides are divided into `cells` by `cells`, each of two triangles.
+fn divided_block(cells: u32, half: DVec3) -> Mesh {
+    let row = cells + 1;
+    let count = row * row;
+    let corner = |v: u32| {
+        let place = |i: u32| 2.0 * f64::from(i) / f64::from(cells) - 1.0;
+        let side = if v < count { -1.0 } else { 1.0 };
+        DVec3::new(place(v % count % row), place(v % count / row), side) * half
+    };
+    let mut triangles = Vec::new();
+    for j in 0..cells {
+        for i in 0..cells {
+            let v = j * row + i;
+            let cell = [[v, v + row, v + 1], [v + 1, v + row, v + row + 1]];
+            triangles.extend(cell);
+            triangles.extend(
+                cell.map(|t| t.map(|v| v + count))
+                    .map(|[a, b, c]| [a, c, b]),
+            );
+        }
+    }
+    let south = 0..cells;
+    let east = (0..cells).map(|j| j * row + cells);
+    let north = (1..row).rev().map(|i| cells * row + i);
+    let west = (1..row).rev().map(|j| j * row);
+    let rim: Vec<u32> = south.chain(east).chain(north).chain(west).collect();
+    for (i, &a) in rim.iter().enumerate() {
+        let b = rim[(i + 1) % rim.len()];
+        triangles.extend([[a, b, a + count], [b, b + count, a + count]]);
+    }
+    ((0..2 * count).map(corner).collect(), triangles)
+}
+
+/// An icosahedron, each facet of which is divided `times` times into four in its plane, or on the
+/// sphere.
+fn divided_icosahedron(times: usize, on_sphere: bool) -> Mesh {
+    let golden = (1.0 + 5.0_f64.sqrt()) / 2.0;
+    let mut points = Vec::new();
+    for (a, b) in [
+        (1.0, golden),
+        (-1.0, golden),
+        (1.0, -golden),
+        (-1.0, -golden),
+    ] {
+        points.extend([
+            DVec3::new(0.0, a, b),
+            DVec3::new(a, b, 0.0),
+            DVec3::new(b, 0.0, a),
+        ]);
+    }
+    let mut triangles = Vec::new();
+    let near = |a: usize, b: usize, p: &[DVec3]| p[a].distance(p[b]) < 2.1;
+    for a in 0..12 {
+        for b in a + 1..12 {
+            for c in b + 1..12 {
+                if near(a, b, &points) && near(b, c, &points) && near(a, c, &points) {
+                    let out = (points[b] - points[a])
+                        .cross(points[c] - points[a])
+                        .dot(points[a]);
+                    let [b, c] = if out > 0.0 { [b, c] } else { [c, b] };
+                    triangles.push([a, b, c].map(|v| v as u32));
+                }
+            }
+        }
+    }
+    for _ in 0..times {
+        let mut middles = HashMap::new();
+        let mut middle = |a: u32, b: u32| {
+            *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+                points.push((points[a as usize] + points[b as usize]) / 2.0);
+                points.len() as u32 - 1
+            })
+        };
+        triangles = triangles
+            .iter()
+            .flat_map(|&[a, b, c]| {
+                let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+                [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+            })
+            .collect();
+        if on_sphere {
+            for p in &mut points {
+                *p = p.normalize() * 2.0;
+            }
+        }
+    }
+    (points, triangles)
+}
+
+fn build((points, triangles): &Mesh) -> Result<Hull, HullError> {
+    let points = points.iter().map(|p| p.as_vec3()).collect();
+    Hull::from_triangles(points, triangles)
+}
+
+fn map(mesh: &Mesh, mut to: impl FnMut(DVec3) -> DVec3) -> Mesh {
+    (mesh.0.iter().map(|&p| to(p)).collect(), mesh.1.clone())
+}
+
+/// Normals of faces and their opposites, which are the worst, tilted by little or much; directions
+/// across edges, and any.
+fn directions(hull: &Hull, dice: &mut Dice) -> Vec<DVec3> {
+    const FACES: usize = 4;
+    const TILTS: [f64; 8] = [0.0, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+    let mut dirs = Vec::new();
+    for face in (0..hull.face_count()).step_by(hull.face_count() / FACES + 1) {
+        for by in TILTS {
+            let dir = hull.face_normal(face as FaceId) + dice.direction() * by;
+            dirs.extend([dir, -dir]);
+        }
+        let v = dice.count(0, hull.points().len() - 1) as VertexId;
+        let w = hull.neighbors(v).next().expect("a vertex has neighbours");
+        dirs.push((hull.vertex(v) - hull.vertex(w)).cross(dice.direction()));
+        dirs.push(dice.direction());
+    }
+    dirs.retain(|dir| dir.length() > 0.0);
+    dirs
+}
+
+/// The most that a climb loses, in plateaus: from every vertex, or of large hulls from every few.
+fn worst_climb(hull: &Hull, dice: &mut Dice) -> f64 {
+    const STARTS: usize = 350;
+    let count = hull.points().len();
+    let mut worst = 0.0_f64;
+    for dir in directions(hull, dice) {
+        let heights = hull.points().iter().map(|p| dir.dot(p.as_dvec3()));
+        let most = heights.fold(f64::NEG_INFINITY, f64::max);
+        for start in (0..count).step_by(count / STARTS + 1) {
+            let (found, _) = hull.support(dir, start as VertexId, &mut Cost::default());
+            let lost = most - dir.dot(found);
+            worst = worst.max(lost / (PLATEAU * hull.radius() * dir.length()));
+        }
+    }
+    worst
+}
+
+/// What `hull/climb.rs` promises of dented hulls, in plateaus.
+const PROMISED: f64 = 4.0;
+
+const HALVES: [DVec3; 4] = [
+    DVec3::new(1.0, 1.0, 0.5),
+    DVec3::new(1.0, 1.0, 0.02),
+    DVec3::new(1.0, 0.1, 0.3),
+    DVec3::new(1.0, 1.0, 0.001),
+];
+
+#[test]
+fn climbs_on_divided_sides_end_at_the_top() {
+    let mut dice = Dice::new(5);
+    for cells in [4, 5, 12, 30, 79] {
+        for half in HALVES {
+            let by = [
+                DQuat::from_euler(EulerRot::XYZ, 1.4, 0.6, 0.0),
+                dice.rotation(),
+            ];
+            for by in by {
+                let mesh = map(&divided_block(cells, half), |p| by * p);
+                let hull = build(&mesh).expect("a block");
+                let worst = worst_climb(&hull, &mut dice);
+                assert!(
+                    worst <= PROMISED,
+                    "{cells} cells of {half}: {worst} plateaus"
+                );
+            }
+        }
+    }
+}
+
+/// As scanned plates are. Where noise is steeper than building takes there is no hull.
+#[test]
+fn climbs_on_noisy_sides_end_at_the_top() {
+    let mut dice = Dice::new(6);
+    let mut built = 0;
+    for cells in [4, 12, 30, 79] {
+        for half in HALVES {
+            for noise in [1e-7, 3e-7, 1e-6] {
+                let by = dice.rotation();
+                let block = divided_block(cells, half);
+                let mesh = map(&block, |p| by * p + dice.direction() * noise);
+                let Ok(hull) = build(&mesh) else { continue };
+                built += 1;
+                let worst = worst_climb(&hull, &mut dice);
+                assert!(
+                    worst <= PROMISED,
+                    "{cells} cells of {half}, {noise}: {worst} plateaus"
+                );
+            }
+        }
+    }
+    assert!(built >= 25, "only {built} built");
+}
+
+#[test]
+fn climbs_on_divided_facets_end_at_the_top() {
+    let mut dice = Dice::new(7);
+    for times in 1..=4 {
+        for on_sphere in [false, true] {
+            for stretch in [
+                DVec3::ONE,
+                DVec3::new(1.0, 1.0, 0.01),
+                DVec3::new(0.01, 0.01, 1.0),
+            ] {
+                let by = dice.rotation();
+                let mesh = map(&divided_icosahedron(times, on_sphere), |p| {
+                    by * (p * stretch)
+                });
+                let hull = build(&mesh).expect("an icosahedron");
+                let worst = worst_climb(&hull, &mut dice);
+                assert!(
+                    worst <= PROMISED,
+                    "{times} times, {on_sphere}, {stretch}: {worst}"
+                );
+            }
+        }
+    }
+}
+
+/// Each of its edges is a dent that building takes for rounding; all together are none.
+#[test]
+fn a_bowl_is_not_convex() {
+    for cells in [20, 40, 79] {
+        let cell = 2.0 / f64::from(cells);
+        let bowl = map(&divided_block(cells, HALVES[0]), |p| {
+            let rise = 0.5e-6 * p.truncate().length_squared() / (cell * cell);
+            p + DVec3::Z * p.z.signum() * rise
+        });
+        let hull = build(&bowl);
+        assert!(
+            matches!(hull, Err(HullError::NotConvex(_))),
+            "{cells}: {hull:?}"
+        );
+    }
+}
+
+/// The vertex that is remembered lies inside of the side that looks away after the slab turned over.
+#[test]
+fn a_slab_that_turns_over_keeps_its_contact() {
+    let by = DQuat::from_euler(EulerRot::XYZ, 1.4, 0.6, 0.0);
+    let (points, triangles) = map(&divided_block(12, HALVES[0]), |p| by * p);
+    let points: Vec<Vec3> = points.iter().map(|p| p.as_vec3()).collect();
+    let slab = HullShape::from_triangles(points.clone(), &triangles).expect("a slab");
+    let slab = SharedShape::new(slab);
+    let lying = DQuat::from_rotation_x(-FRAC_PI_2) * by.inverse();
+    let grounds = [
+        (SharedShape::halfspace(Vec3::Y), 0.0),
+        (SharedShape::cuboid(3.0, 1.0, 3.0), 1.0),
+    ];
+    for (ground, top) in grounds {
+        let mut manifolds = Vec::new();
+        for turn in [0.0, PI, PI, 0.0, PI] {
+            let rotation = (DQuat::from_rotation_x(turn) * lying).as_quat();
+            let pose = Pose::from_parts(Vec3::new(0.0, 0.49 + top, 0.0), rotation);
+            IsaGjkDispatcher::default()
+                .contact_manifolds(&pose, &*ground, &*slab, 0.02, &mut manifolds, &mut None)
+                .expect("supported");
+            let lowest = |p: &Vec3| pose.transform_point(*p).y - top;
+            let lowest = points.iter().map(lowest).fold(f32::INFINITY, f32::min);
+            let found: &ContactManifold<(), ()> = &manifolds[0];
+            let deepest = found.find_deepest_contact().map(|point| point.dist);
+            let off = deepest.map(|deepest| (deepest - lowest).abs());
+            assert!(
+                off.is_some_and(|off| off < 1e-5),
+                "{deepest:?} instead of {lowest}"
+            );
+        }
+    }
+}

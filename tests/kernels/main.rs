@@ -1,0 +1,12 @@
+//! What the kernels answer: hulls, supports, simplices, GJK, EPA and ray casts.
+
+mod every_start;
+mod hill_climbing;
+mod hull_errors;
+mod oracle;
+mod properties;
+mod ray_cast;
+mod returning_vertex;
+mod shells;
+mod simplex;
+mod smooth;

@@ -1,0 +1,244 @@
+//! Laws that hold for any two hulls at any pose, through the query and through the dispatcher.
+
+use glam::{DQuat, DVec3, Vec3};
+use isa_gjk::epa::EpaScratch;
+use isa_gjk::pose::RelativePose;
+use isa_gjk::query::{Answer, Memory, Proximity, Query};
+use isa_gjk::stats::Cost;
+use isa_gjk::support::{Cso, Polytope, Support};
+use isa_gjk::{Hull, IsaGjkDispatcher};
+use parry3d::math::Pose;
+use parry3d::query::{Contact, QueryDispatcher};
+use parry3d::shape::SharedShape;
+use proptest::prelude::*;
+use testkit::generate::Dice;
+
+/// Relative to the pair's size: a depth is certified to 1e-6 of the smaller radius, and both
+/// answers that are compared may be off by that.
+const TOLERANCE: f64 = 3.0e-6;
+
+/// What the same query rounded to f32 may add.
+const SINGLE: f64 = 3.0e-6;
+
+/// Two hulls and where the second is; as numbers, so that proptest can shrink them.
+#[derive(Clone, Debug)]
+struct Pair {
+    hulls: [Vec<Vec3>; 2],
+    pose: Pose,
+}
+
+fn point() -> impl Strategy<Value = Vec3> {
+    prop::array::uniform3(-1.0_f32..1.0).prop_map(Vec3::from_array)
+}
+
+fn rotation() -> impl Strategy<Value = DQuat> {
+    prop::array::uniform4(-1.0_f64..1.0)
+        .prop_filter("a quaternion has a direction", |q| {
+            DQuat::from_array(*q).length() > 0.1
+        })
+        .prop_map(|q| DQuat::from_array(q).normalize())
+}
+
+fn pose(reach: f32) -> impl Strategy<Value = Pose> {
+    (point(), rotation()).prop_map(move |(p, q)| Pose::from_parts(p * reach, q.as_quat()))
+}
+
+/// Points of which some, on purpose, are coplanar or on a line.
+fn cloud() -> impl Strategy<Value = Vec<Vec3>> {
+    let snapped = point().prop_map(|p| (p * 4.0).round() * 0.25);
+    let points = prop_oneof![
+        prop::collection::vec(point(), 4..40),
+        prop::collection::vec(snapped, 8..40),
+    ];
+    points.prop_filter("a hull", |points| {
+        let built = Hull::from_points(points);
+        built.is_ok_and(|h| thickness(&h) > 0.02) && SharedShape::convex_hull(points).is_some()
+    })
+}
+
+/// How deep the centre is inside.
+fn thickness(hull: &Hull) -> f64 {
+    (0..hull.face_count() as u32)
+        .map(|f| hull.face_offset(f) - hull.face_normal(f).dot(hull.center()))
+        .fold(f64::INFINITY, f64::min)
+}
+
+fn pair() -> impl Strategy<Value = Pair> {
+    (cloud(), cloud(), pose(1.5)).prop_map(|(a, b, pose)| Pair {
+        hulls: [a, b],
+        pose,
+    })
+}
+
+fn build(points: &[Vec3]) -> Hull {
+    Hull::from_points(points).expect("filtered")
+}
+
+fn shape(points: &[Vec3]) -> SharedShape {
+    SharedShape::convex_hull(points).expect("filtered")
+}
+
+fn near(hulls: [&Hull; 2], pose: &Pose, memory: &Memory) -> Proximity {
+    let pose = RelativePose::new(pose).expect("a finite pose");
+    let query = Query {
+        cso: &Cso {
+            shape_1: hulls[0],
+            shape_2: hulls[1],
+            pose: &pose,
+        },
+        max_distance: f64::INFINITY,
+        shells: None,
+        scratch: &mut EpaScratch::default(),
+        cost: &mut Cost::default(),
+    }
+    .run(memory);
+    match query {
+        Some((Answer::Near(proximity), _)) => proximity,
+        other => panic!("nothing is beyond infinity: {other:?}"),
+    }
+}
+
+fn size(hulls: [&Hull; 2]) -> f64 {
+    hulls[0].radius() + hulls[1].radius()
+}
+
+/// How far the shapes are apart along a unit direction.
+fn separation(hulls: [&Hull; 2], pose: &RelativePose, n: DVec3) -> f64 {
+    let highest = |hull: &Hull, d: DVec3| {
+        let heights = hull.points().iter().map(|p| d.dot(p.as_dvec3()));
+        heights.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let lowest_of_2 =
+        n.dot(pose.point_to_1(DVec3::ZERO)) - highest(hulls[1], -pose.direction_to_2(n));
+    lowest_of_2 - highest(hulls[0], n)
+}
+
+/// How far a point is beyond the face it violates most.
+fn outside(hull: &Hull, point: DVec3) -> f64 {
+    (0..hull.face_count() as u32)
+        .map(|f| hull.face_normal(f).dot(point) - hull.face_offset(f))
+        .fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn contact(shapes: [&SharedShape; 2], pose: &Pose) -> Contact {
+    IsaGjkDispatcher::default()
+        .contact(pose, &**shapes[0], &**shapes[1], 100.0)
+        .expect("hulls are supported")
+        .expect("nothing is beyond a hundred")
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: 2000,
+        failure_persistence: None,
+        rng_seed: prop::test_runner::RngSeed::Fixed(1988),
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn no_direction_separates_more_than_the_answer(pair in pair(), seed in any::<u64>()) {
+        let hulls = pair.hulls.each_ref().map(|h| build(h));
+        let hulls = hulls.each_ref();
+        let pose = RelativePose::new(&pair.pose).expect("finite");
+        let found = near(hulls, &pair.pose, &Memory::None);
+        let shown = separation(hulls, &pose, found.normal);
+        prop_assert!((shown - found.signed_distance).abs() <= TOLERANCE * size(hulls), "{shown} {found:?}");
+        let mut dice = Dice::new(seed.into());
+        let faces = hulls[0].face_count() as u32;
+        let normals = (0..faces).map(|f| hulls[0].face_normal(f).normalize());
+        let near_it = (0..50).map(|_| (found.normal + dice.direction() * 0.1).normalize());
+        for n in normals.chain(near_it) {
+            let other = separation(hulls, &pose, n);
+            prop_assert!(other <= found.signed_distance + TOLERANCE * size(hulls), "{n}: {other} {found:?}");
+        }
+    }
+
+    #[test]
+    fn witness_points_are_in_their_shapes_and_apart_by_the_distance(pair in pair()) {
+        let hulls = pair.hulls.each_ref().map(|h| build(h));
+        let hulls = hulls.each_ref();
+        let pose = RelativePose::new(&pair.pose).expect("finite");
+        let found = near(hulls, &pair.pose, &Memory::None);
+        let slack = TOLERANCE * size(hulls);
+        prop_assert!((found.normal.length() - 1.0).abs() < 1.0e-9);
+        prop_assert!(outside(hulls[0], found.on_1) <= slack, "{found:?}");
+        prop_assert!(outside(hulls[1], pose.point_to_2(found.on_2)) <= slack, "{found:?}");
+        let gap = found.normal.dot(found.on_2 - found.on_1);
+        prop_assert!((gap - found.signed_distance).abs() <= slack, "{gap} {found:?}");
+    }
+
+    #[test]
+    fn swapping_the_shapes_changes_nothing(pair in pair()) {
+        let hulls = pair.hulls.each_ref().map(|h| build(h));
+        let [a, b] = hulls.each_ref();
+        let there = near([a, b], &pair.pose, &Memory::None).signed_distance;
+        // The inverse pose is rounded to f32.
+        let back = near([b, a], &pair.pose.inverse(), &Memory::None).signed_distance;
+        prop_assert!((there - back).abs() <= (TOLERANCE + SINGLE) * size([a, b]), "{there} {back}");
+        let shapes = pair.hulls.each_ref().map(|h| shape(h));
+        let there = contact([&shapes[0], &shapes[1]], &pair.pose).dist;
+        let back = contact([&shapes[1], &shapes[0]], &pair.pose.inverse()).dist;
+        prop_assert!(f64::from((there - back).abs()) <= (TOLERANCE + SINGLE) * size([a, b]), "{there} {back}");
+    }
+
+    #[test]
+    fn a_common_motion_changes_nothing(pair in pair(), motion in pose(2.0)) {
+        let shapes = pair.hulls.each_ref().map(|h| shape(h));
+        let hulls = pair.hulls.each_ref().map(|h| build(h));
+        let moved = motion.inv_mul(&(motion * pair.pose));
+        let [before, after] = [pair.pose, moved].map(|p| contact([&shapes[0], &shapes[1]], &p).dist);
+        let error = f64::from((before - after).abs());
+        prop_assert!(error <= (TOLERANCE + SINGLE) * size(hulls.each_ref()), "{before} {after}");
+    }
+
+    #[test]
+    fn scaling_by_a_power_of_two_scales_the_answer_exactly(pair in pair(), exponent in -20_i32..20) {
+        let scale = 2.0_f32.powi(exponent);
+        let scaled = pair.hulls.each_ref().map(|h| {
+            let hull = build(h);
+            let triangles = parry3d::transformation::try_convex_hull(h).expect("filtered").1;
+            let points = hull.points().iter().map(|p| *p * scale).collect();
+            [Hull::from_triangles(points, &triangles).expect("as before"), hull]
+        });
+        let [[a, small_a], [b, small_b]] = &scaled;
+        let pose = Pose::from_parts(pair.pose.translation * scale, pair.pose.rotation);
+        let one = near([small_a, small_b], &pair.pose, &Memory::None);
+        let many = near([a, b], &pose, &Memory::None);
+        let factor = f64::from(scale);
+        let error = (many.signed_distance - one.signed_distance * factor).abs();
+        prop_assert!(error <= 1.0e-12 * factor * size([small_a, small_b]), "{one:?} {many:?}");
+        prop_assert!(many.normal.distance(one.normal) <= 1.0e-9, "{one:?} {many:?}");
+    }
+
+    #[test]
+    fn memory_changes_nothing(pair in pair(), before in pose(1.5), nudge in pose(0.01)) {
+        let hulls = pair.hulls.each_ref().map(|h| build(h));
+        let hulls = hulls.each_ref();
+        let cold = near(hulls, &pair.pose, &Memory::None).signed_distance;
+        // A memory of this very pose, of one near it, and of an unrelated one.
+        let close = Pose::from_parts(pair.pose.translation + nudge.translation, pair.pose.rotation);
+        for old in [pair.pose, close, before] {
+            let was = near(hulls, &old, &Memory::None);
+            for memory in [
+                Memory::Contact(was.normal, was.features),
+                Memory::Axis(was.normal, [0, 0]),
+            ] {
+                let warm = near(hulls, &pair.pose, &memory).signed_distance;
+                prop_assert!((warm - cold).abs() <= TOLERANCE * size(hulls), "{cold} {warm} {memory:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_dispatcher_says_what_the_query_says(pair in pair()) {
+        let hulls = pair.hulls.each_ref().map(|h| build(h));
+        let shapes = pair.hulls.each_ref().map(|h| shape(h));
+        let found = near(hulls.each_ref(), &pair.pose, &Memory::None);
+        let contact = contact([&shapes[0], &shapes[1]], &pair.pose);
+        let limit = (TOLERANCE + SINGLE) * size(hulls.each_ref());
+        prop_assert!((f64::from(contact.dist) - found.signed_distance).abs() <= limit, "{contact:?} {found:?}");
+        let on_2 = pair.pose * contact.point2;
+        let gap = f64::from((on_2 - contact.point1).dot(contact.normal1));
+        prop_assert!((gap - f64::from(contact.dist)).abs() <= limit, "{contact:?}");
+    }
+}

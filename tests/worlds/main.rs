@@ -1,0 +1,14 @@
+//! What happens in rapier's worlds.
+
+mod character;
+mod determinism;
+mod fast_hull;
+mod hull_shape_world;
+mod mid_run;
+mod prepared_shapes;
+mod resting;
+mod scenes;
+#[cfg(feature = "serde-serialize")]
+mod snapshots;
+mod soak;
+mod unchanged_shapes;
