@@ -34,9 +34,25 @@ impl Vectors {
     }
 
     #[inline(always)]
+    pub fn length_squared(self) -> f64x4 {
+        let [x, y, z] = self.0;
+        x * x + y * y + z * z
+    }
+
+    #[inline(always)]
     pub fn as_f32(self) -> [f32x4; 3] {
         let [x, y, z] = self.0;
         [as_f32(x), as_f32(y), as_f32(z)]
+    }
+}
+
+impl Sub for Vectors {
+    type Output = Self;
+
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        Self([x - a, y - b, z - c])
     }
 }
 

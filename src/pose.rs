@@ -87,6 +87,20 @@ impl RelativePose {
         self.direction_to_2(p - self.translation)
     }
 
+    /// Four points of frame 2, in frame 1.
+    #[inline(always)]
+    pub(crate) fn points_to_1(&self, points: Vectors) -> Vectors {
+        let row = |axis: usize| {
+            let row = DVec3::new(
+                self.rotation.x_axis[axis],
+                self.rotation.y_axis[axis],
+                self.rotation.z_axis[axis],
+            );
+            points.dot(row) + self.translation[axis]
+        };
+        Vectors([row(0), row(1), row(2)])
+    }
+
     /// Four points of frame 1, in frame 2.
     #[inline(always)]
     pub(crate) fn points_to_2(&self, points: Vectors) -> Vectors {

@@ -14,6 +14,9 @@ pub enum Stage {
     /// One or two support pairs proved separation: along the axis of the previous frame (the line
     /// of centres, for a new pair), or along one tilted from it.
     Axis,
+    /// The features of the previous frame, re-evaluated, certified the distance or depth, and the contacts
+    /// stayed on their places.
+    Kept,
     /// The features of the previous frame, re-evaluated, certified separation, distance or depth.
     Feature,
     /// Features near the previous ones, or near that axis, did: walked to from facet to facet.
@@ -32,11 +35,12 @@ pub enum Stage {
 
 impl Stage {
     /// How many stages there are.
-    pub const COUNT: usize = 9;
+    pub const COUNT: usize = 10;
     /// All stages, in the order of [`Stats::answered`].
     pub const ALL: [Self; Self::COUNT] = [
         Self::Balls,
         Self::Axis,
+        Self::Kept,
         Self::Feature,
         Self::Walk,
         Self::Shell,
@@ -51,6 +55,7 @@ impl Stage {
         match self {
             Self::Balls => "balls",
             Self::Axis => "axis",
+            Self::Kept => "kept",
             Self::Feature => "feature",
             Self::Walk => "walk",
             Self::Shell => "shell",

@@ -99,3 +99,18 @@ pub const RAY_TOUCHING: f64 = 1e-8;
 /// A motion whose share against a contact normal is below this is along the contact: normals and
 /// velocities given in f32, and turned from frame to frame, are off by a few roundings.
 pub const GRAZING: f64 = 1e-6;
+
+/// Contacts keep their places while the normal turns by less than 1 degree (cosine) from one update to
+/// the next: a greater turn means that other features have come into contact.
+pub const KEPT_ANGLE_COS: f64 = 0.999_847_7;
+
+/// Contacts keep their places while their two points are apart, across the normal, by less than this
+/// share of the smaller shape's radius. Heaps of small bodies rest for anything from 1 % on; what
+/// slides or rolls takes its contacts along in steps of this size.
+pub const KEPT_DRIFT: f64 = 2e-2;
+
+/// The deepest of the contacts that keep their places is told at the query's depth. By this share of
+/// the smaller shape's radius, the promised accuracy, it may lie above the deepest place of all: corners tie up
+/// to the tilt of a body at rest, and must not take turns. Beyond it, a corner without a contact has
+/// become the deepest, and the contacts are chosen anew.
+pub const KEPT_DEPTH: f64 = 2e-5;

@@ -14,7 +14,7 @@
 
 use glam::{DVec3, Vec3};
 use parry3d::math::Rotation;
-use parry3d::query::ContactManifold;
+use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
 use wide::u32x4;
 
@@ -80,7 +80,8 @@ pub(super) fn read<M, C>(
     let Some(axis) = unit(stored) else {
         return Memory::None;
     };
-    match manifold.points.first() {
+    let deepest = |a: &&TrackedContact<C>, b: &&TrackedContact<C>| a.dist.total_cmp(&b.dist);
+    match manifold.points.iter().min_by(deepest) {
         None => {
             let n2 = manifold.local_n2;
             // Casts saturate, and NaN becomes 0: any vector is some pair of vertices.

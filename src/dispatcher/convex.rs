@@ -9,6 +9,7 @@ use parry3d::shape::PolygonalFeatureMap;
 use super::cache::{self, AxisFrame};
 use super::constraints::{self, Constraints};
 use super::half_space;
+use super::kept::{self, Present};
 use super::others::HalfSpace;
 use super::pair::{Pair, PairVisitor, Scratch};
 use super::points::write_points;
@@ -81,6 +82,10 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             Memory::Contact(normal, features) => {
                 let verdict = query.certify(features);
                 if let Verdict::Certified(near) = &verdict {
+                    if self.keep_contacts(pair, &pose, near, cso.smaller_radius()) {
+                        self.stats.record(Stage::Kept, &cost);
+                        return Some(());
+                    }
                     self.stats.record(Stage::Feature, &cost);
                     self.write_contacts(pair, &cso, near, max_distance, &mut scratch.clip);
                     return Some(());
@@ -93,6 +98,9 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         match answer {
             Answer::Apart(apart) => cache::write_axis(self.manifold, apart, frame),
             Answer::Near(near) => {
+                if self.keep_contacts(pair, &pose, near, cso.smaller_radius()) {
+                    return Some(());
+                }
                 self.write_contacts(pair, &cso, near, max_distance, &mut scratch.clip);
             }
         }
@@ -124,6 +132,8 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                 &half_space::axis(pair, &near),
                 AxisFrame::First,
             );
+        } else if self.keep_contacts(pair, &pose, &near, pair.hull.radius()) {
+            self.stats.record(Stage::Kept, &cost);
         } else {
             self.stats.record(Stage::Feature, &cost);
             let contacts = manifold::half_space_contacts(
@@ -133,9 +143,9 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                 max_distance,
                 &mut scratch.clip,
             );
-            let [n1, n2] = cache::ordered(normals(&near, &pose), pair.swapped);
-            self.manifold.local_n1 = n1.as_vec3();
-            self.manifold.local_n2 = n2.as_vec3();
+            let normals = both(normals(&near, &pose), |normal| normal.as_vec3());
+            [self.manifold.local_n1, self.manifold.local_n2] =
+                cache::ordered(normals, pair.swapped);
             write_points(self.manifold, &contacts, pair.borders, pair.swapped);
         }
         Some(())
@@ -211,6 +221,27 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
             });
         });
         cache::turn_axis(self.manifold, pair.swapped, rotation.inverse());
+    }
+
+    /// Leaves the contacts where they are, if that is right. Corrected normals are not the query's, so its
+    /// depth says nothing about their contacts.
+    #[inline(always)]
+    fn keep_contacts<B>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        pose: &RelativePose,
+        near: &Proximity,
+        radius: f64,
+    ) -> bool {
+        let present = Present {
+            pose,
+            normals: normals(near, pose),
+            signed_distance: near.signed_distance - (pair.borders[0] + pair.borders[1]),
+            radius,
+            swapped: pair.swapped,
+        };
+        matches!(self.constraints, [Constraints::None, Constraints::None])
+            && kept::keep_contacts(self.manifold, &present)
     }
 
     fn write_contacts<B: Polytope>(

@@ -10,6 +10,7 @@ mod digest;
 mod half_space;
 mod hulls;
 mod int_hash;
+mod kept;
 mod mesh;
 mod others;
 mod pair;

@@ -91,9 +91,6 @@ impl Chosen {
 
 /// The contacts around the witness of a query along its normal: those nearer than `max_distance`
 /// first, then the nearest of the others, which a solver needs for what moves fast.
-///
-/// Where there is room the first contact is there twice, as it is in parry's manifolds. To a solver
-/// a contact is a spring, and a body that lies on one or two of them sinks in too far.
 pub fn contacts<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     proximity: &Proximity,
@@ -131,9 +128,6 @@ pub fn contacts<A: Polytope, B: Polytope>(
     chosen.push(first);
     let first_at = first.map_or(Vec2::ZERO, |corner| corners.at(corner));
     chosen.push_all(candidates.spread(corners, first_at, same));
-    if chosen.len < MAX_POINTS {
-        chosen.push(first);
-    }
     chosen.fill_up(candidates);
     let witness = (least, proximity.features);
     patch.contacts(cso, witness, (polygons, candidates), &chosen)

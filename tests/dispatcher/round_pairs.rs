@@ -15,6 +15,8 @@ use testkit::pose::ExactPose;
 /// Of the larger shape's diameter.
 const DISTANCE: f64 = 1.0e-5;
 const REGRET: f64 = 1.0e-4;
+/// The share of the smaller radius by which contacts that keep their places come apart sideways.
+const KEPT: f64 = 2.0e-2;
 
 /// A core with a border around it, for the oracle and for parry.
 struct Round {
@@ -106,23 +108,32 @@ impl Check<'_> {
     /// The points are on their surfaces, and apart by the distance along the normal.
     fn points(&self, what: &str, distance: f64, normal: DVec3, [on_hull, on_round]: [DVec3; 2]) {
         let slack = 2.0 * DISTANCE * self.scale();
+        // Contacts that keep their places may come apart across the normal.
+        let across = if what.starts_with("warm") {
+            KEPT * self.scale()
+        } else {
+            slack
+        };
         let gap = self.pose.apply(on_round) - on_hull;
         assert!(
-            gap.distance(normal * distance) <= slack,
+            (gap.dot(normal) - distance).abs() <= slack,
+            "{what}: {gap} for {distance}"
+        );
+        assert!(
+            gap.distance(normal * distance) <= across,
             "{what}: {gap} for {distance}"
         );
         assert!(
             self.hull.solid.outside(on_hull).abs() <= slack,
             "{what}: off the hull"
         );
-        let inward = self.pose.rotation.inverse() * normal * self.round.border;
         let core = &self.round.core.points;
         let [a, b] = [core[0], core[core.len() - 1]];
         let along = (b - a).normalize_or_zero();
-        let from_a = on_round + inward - a;
+        let from_a = on_round - a;
         let t = from_a.dot(along).clamp(0.0, a.distance(b));
         assert!(
-            from_a.distance(along * t) <= slack,
+            (from_a.distance(along * t) - self.round.border).abs() <= slack,
             "{what}: off the surface"
         );
     }
@@ -253,9 +264,6 @@ fn a_lying_capsule_rests_on_both_ends() {
                     .map(|p| ordered([p.local_p1, p.local_p2], swapped)[0].x)
                     .collect();
                 places.sort_by(Real::total_cmp);
-                // The deepest is there twice.
-                assert_eq!(places.len(), 3, "{places:?}");
-                places.dedup();
                 assert_eq!(places.len(), 2, "{places:?}");
                 for (place, end) in places.iter().zip(ends) {
                     assert!((place - end).abs() < 2.0e-3, "{places:?} for {ends:?}");

@@ -305,3 +305,89 @@ fn boxes_with_a_noisy_side_come_to_rest_on_it() {
         assert!(drift < 1e-3, "box {i}: went {drift} m");
     }
 }
+/// A heap of stones of hand size, one island, sleeps as soon as all of its stones lie still.
+#[test]
+fn heaps_of_small_hulls_sleep() {
+    for vertices in [10, 20] {
+        for size in [0.05, 0.12] {
+            let world = |narrow_phase| heap(vertices, size, narrow_phase);
+            let [default, ours] = [
+                world(NarrowPhase::new()),
+                world(NarrowPhase::with_query_dispatcher(
+                    IsaGjkDispatcher::default(),
+                )),
+            ]
+            .map(|mut world| frames_until_asleep(&mut world, 500));
+            let limit = default.map_or(500, |frames| frames * 5 / 4 + 30);
+            let is_calm = ours.is_some_and(|frames| frames <= limit);
+            assert!(
+                is_calm,
+                "{vertices} vertices, {size} m: {ours:?} for {default:?}"
+            );
+        }
+    }
+}
+
+/// 150 stones above a floor, between four walls.
+fn heap(vertices: u32, size: Real, narrow_phase: NarrowPhase) -> PhysicsWorld {
+    let mut world = PhysicsWorld {
+        narrow_phase,
+        ..PhysicsWorld::default()
+    };
+    let mut random = Rand32::new(5);
+    let mut inside = |from: Real, to: Real| from + (to - from) * random.rand_float();
+    let half = 3.0 * size;
+    world.insert_collider(
+        ColliderBuilder::cuboid(9.0, 0.5, 9.0).translation(-0.5 * Vector::Y),
+        None,
+    );
+    for (x, z) in [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)] {
+        let at = Vector::new(x, 0.0, z) * (half + 0.5);
+        world.insert_collider(
+            ColliderBuilder::cuboid(0.5 + half * f32::abs(z), 9.0, 0.5 + half * f32::abs(x))
+                .translation(at),
+            None,
+        );
+    }
+    for i in 0..150 {
+        let points: Vec<Vector> = (0..vertices)
+            .map(|_| {
+                let turn = inside(0.0, TAU);
+                let y = inside(-1.0, 1.0);
+                let flat = (1.0 - y * y).sqrt();
+                Vector::new(flat * turn.cos(), 0.8 * y, flat * turn.sin()) * (0.5 * size)
+            })
+            .collect();
+        let shape = SharedShape::convex_hull(&points).expect("a solid");
+        let cell = Vector::new(
+            (i % 5) as Real - 2.0,
+            (i / 25) as Real + 0.7,
+            (i / 5 % 5) as Real - 2.0,
+        );
+        let turn = Vector::new(inside(-2.0, 2.0), inside(-2.0, 2.0), inside(-2.0, 2.0));
+        let body = RigidBodyBuilder::dynamic().pose(Pose::new(cell * (1.1 * size), turn));
+        world.insert(body, ColliderBuilder::new(shape));
+    }
+    world
+}
+
+/// The first step after which 19 of 20 bodies sleep for good.
+fn frames_until_asleep(world: &mut PhysicsWorld, frames: u32) -> Option<u32> {
+    let mut since = None;
+    for frame in 0..frames {
+        world.step();
+        let dynamic = world.bodies.iter().filter(|(_, body)| body.is_dynamic());
+        let (all, asleep) = dynamic.fold((0, 0), |(all, asleep), (_, body)| {
+            (all + 1, asleep + u32::from(body.is_sleeping()))
+        });
+        if asleep * 20 < all * 19 {
+            since = None;
+        } else if since.is_none() {
+            since = Some(frame);
+        }
+        if asleep == all {
+            break;
+        }
+    }
+    since
+}

@@ -1,0 +1,125 @@
+//! Contacts keep their places on both shapes while these hardly move, and still tell the truth.
+
+mod common;
+
+use common::generate::Dice;
+use common::memory::{Manifold, Memory};
+use glam::DVec3;
+use isa_gjk::{IsaGjkDispatcher, Stage};
+use parry3d::math::{Pose, Real, Rotation, Vector};
+use parry3d::shape::SharedShape;
+use std::f32::consts::TAU;
+
+/// The share of the smaller radius that the two points of a contact may be apart across the normal.
+const DRIFT: f64 = 2e-2;
+const PREDICTION: Real = 0.02;
+
+fn prism(sides: u32, radius: Real) -> SharedShape {
+    let points: Vec<Vector> = (0..sides)
+        .flat_map(|side| {
+            let (sin, cos) = (TAU * side as Real / sides as Real).sin_cos();
+            [-0.4, 0.4].map(|y| Vector::new(cos, y, sin) * radius)
+        })
+        .collect();
+    SharedShape::convex_hull(&points).expect("a solid")
+}
+
+fn grounds() -> [SharedShape; 3] {
+    let corner = |i: u32| {
+        let side = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        Vector::new(6.0 * side(0), 0.5 * side(1) - 0.5, 6.0 * side(2))
+    };
+    let corners: Vec<Vector> = (0..8).map(corner).collect();
+    [
+        SharedShape::convex_hull(&corners).expect("a slab"),
+        SharedShape::cuboid(6.0, 1e-3, 6.0),
+        SharedShape::halfspace(Vector::Y),
+    ]
+}
+
+/// Upright at the origin of the ground, moved and turned by up to `noise`.
+fn rocked(height: Real, noise: f64, dice: &mut Dice) -> Pose {
+    let small = |dice: &mut Dice| (dice.direction() * noise).as_vec3();
+    let turn = Rotation::from_scaled_axis(small(dice));
+    Pose::from_parts(Vector::Y * height + small(dice), turn)
+}
+
+fn places(manifold: &Manifold) -> Vec<[Vector; 2]> {
+    let points = manifold.points.iter();
+    points.map(|p| [p.local_p1, p.local_p2]).collect()
+}
+
+#[test]
+fn contacts_of_a_resting_body_keep_their_places() {
+    let mut dice = Dice::new(3);
+    for ground in grounds() {
+        for sides in [3, 4, 8, 16, 64] {
+            for radius in [0.01, 0.05, 1.0] {
+                let shape = prism(sides, radius);
+                let dispatcher = IsaGjkDispatcher::default();
+                let mut memory = Memory::default();
+                let mut first = None;
+                let what = format!("{sides} sides, radius {radius}");
+                for _ in 0..50 {
+                    let lift = if ground.as_cuboid().is_some() {
+                        1e-3
+                    } else {
+                        0.0
+                    };
+                    let noise = 4e-6 * f64::from(radius);
+                    let pose = rocked(0.399 * radius + lift, noise, &mut dice);
+                    let manifold = memory
+                        .update(&dispatcher, &pose, [&ground, &shape], PREDICTION)
+                        .expect("supported");
+                    assert!(manifold.points.len() >= 3, "{what}");
+                    let places = places(manifold);
+                    assert_eq!(&places, first.get_or_insert(places.clone()), "{what}");
+                }
+                let kept = dispatcher.stats().answered[Stage::Kept as usize];
+                assert!(kept >= 15, "{what}: only {kept} of 49 updates kept");
+            }
+        }
+    }
+}
+
+/// Whatever moves slowly: the kept points are nearly above one another, no distance is below the true one,
+/// and the least is the true one.
+#[test]
+fn kept_contacts_never_show_an_overlap_that_is_not_there() {
+    let mut dice = Dice::new(4);
+    let dispatcher = IsaGjkDispatcher::default();
+    for _ in 0..40 {
+        let [a, b] = [(); 2].map(|()| {
+            let corners = dice.count(8, 40);
+            dice.hull(corners, 1.0)
+        });
+        // A ball around the shape may be larger than half of its diameter.
+        let radius = 0.6 * a.solid.diameter().min(b.solid.diameter());
+        let mut memory = Memory::default();
+        for pose in dice.passage(600, radius * 2.0) {
+            let pose = pose.to_f32();
+            let shapes = [&a.shape, &b.shape];
+            let manifold = memory.update(&dispatcher, &pose, shapes, PREDICTION);
+            let manifold = manifold.expect("supported");
+            let cold = common::memory::cold_manifold(&dispatcher, &pose, shapes, PREDICTION);
+            let cold = cold.expect("supported");
+            let depth = |m: &Manifold| m.find_deepest_contact().map(|p| f64::from(p.dist));
+            let (Some(least), Some(exact)) = (depth(manifold), depth(&cold)) else {
+                assert_eq!(depth(manifold), depth(&cold));
+                continue;
+            };
+            assert!((least - exact).abs() < 1e-5 * radius, "{least} for {exact}");
+            let normal = manifold.local_n1.as_dvec3();
+            for point in &manifold.points {
+                let between: DVec3 = (pose * point.local_p2 - point.local_p1).as_dvec3();
+                let along = between.dot(normal);
+                let across = (between - normal * along).length();
+                assert!((along - f64::from(point.dist)).abs() < 2e-4 * radius);
+                assert!(along > exact - 1e-5 * radius);
+                assert!(across < DRIFT * radius, "{across} across");
+            }
+        }
+    }
+    let kept = dispatcher.stats().answered[Stage::Kept as usize];
+    assert!(kept > 500, "only {kept} updates kept their contacts");
+}
