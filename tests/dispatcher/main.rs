@@ -11,6 +11,7 @@ mod exact_cases;
 mod fuzz;
 mod hull_shape;
 mod hull_shape_solid;
+mod kept;
 mod many_parts;
 mod meshes;
 mod near_touch;

@@ -1,14 +1,13 @@
 //! Contacts keep their places on both shapes while these hardly move, and still tell the truth.
 
-mod common;
+use std::f32::consts::TAU;
 
-use common::generate::Dice;
-use common::memory::{Manifold, Memory};
 use glam::DVec3;
 use isa_gjk::{IsaGjkDispatcher, Stage};
 use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::shape::SharedShape;
-use std::f32::consts::TAU;
+use testkit::generate::Dice;
+use testkit::memory::{Manifold, Memory, cold_manifold};
 
 /// The share of the smaller radius that the two points of a contact may be apart across the normal.
 const DRIFT: f64 = 2e-2;
@@ -101,7 +100,7 @@ fn kept_contacts_never_show_an_overlap_that_is_not_there() {
             let shapes = [&a.shape, &b.shape];
             let manifold = memory.update(&dispatcher, &pose, shapes, PREDICTION);
             let manifold = manifold.expect("supported");
-            let cold = common::memory::cold_manifold(&dispatcher, &pose, shapes, PREDICTION);
+            let cold = cold_manifold(&dispatcher, &pose, shapes, PREDICTION);
             let cold = cold.expect("supported");
             let depth = |m: &Manifold| m.find_deepest_contact().map(|p| f64::from(p.dist));
             let (Some(least), Some(exact)) = (depth(manifold), depth(&cold)) else {
