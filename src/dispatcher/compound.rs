@@ -6,7 +6,6 @@
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::Pose;
-use parry3d::query::details::NormalConstraints;
 use parry3d::shape::{Compound, Shape};
 
 use super::constraints::Constraints;
@@ -85,6 +84,6 @@ fn part<'a>(compound: &'a Compound, id: u32, proved: LastProved<'a>) -> Part<'a>
         id,
         side: Side::new(&**shape, proved),
         pos: Some(*pos),
-        constraints: Constraints::given(constraints.map(|n| n as &dyn NormalConstraints)),
+        constraints: constraints.map_or(Constraints::None, Constraints::OfPart),
     }
 }

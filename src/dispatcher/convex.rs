@@ -7,7 +7,7 @@ use parry3d::query::details::contact_manifold_pfm_pfm;
 use parry3d::shape::PolygonalFeatureMap;
 
 use super::cache::{self, AxisFrame};
-use super::constraints::{self, Constraints};
+use super::constraints::{self, Constraints, UNCORRECTED};
 use super::half_space;
 use super::kept::{self, Present};
 use super::others::HalfSpace;
@@ -20,11 +20,6 @@ use crate::pose::RelativePose;
 use crate::query::{self, Answer, Memory, Proximity, Query, Verdict};
 use crate::stats::{Cost, SharedStats, Stage};
 use crate::support::{Cso, Polytope, Support};
-
-/// Corrected normals of mesh edges can turn a deep overlap into an absurd depth along a face
-/// that the shapes do not meet. As parry does, such points are left out beyond this multiple of
-/// the uncorrected depth.
-const ABSURD_DEPTH: f64 = 5.0;
 
 /// Brings a manifold up to date.
 pub(super) struct UpdateManifold<'a, M, C> {
@@ -256,18 +251,29 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         let normals = both(cache::ordered(normals(near, cso.pose), swapped), |n| {
             n.as_vec3()
         });
-        let Some([n1, n2]) = self.constrained(normals) else {
+        let Some([n1, n2]) = self.constrained(cso, swapped, max_distance, normals) else {
             // Discarded: there is no contact, but there is a place to start from.
             cache::write_start(self.manifold, near, cso);
             return;
         };
-        let contacts = if n1 == normals[0] {
-            manifold::contacts(cso, near, max_distance, scratch)
-        } else {
+        let is_corrected = !n1.abs_diff_eq(normals[0], UNCORRECTED);
+        let mut corrected = None;
+        if is_corrected {
             let [normal, _] = cache::ordered([n1, n2], swapped);
             let normal = normal.as_dvec3().normalize();
-            let limit = ABSURD_DEPTH * near.signed_distance.min(0.0);
-            manifold::contacts_along(cso, near, normal, [limit, max_distance], scratch)
+            corrected = manifold::contacts_along(cso, near, normal, max_distance, scratch);
+            // What overlaps must be pushed out, if not along the corrected normal.
+            if corrected.is_none() && near.signed_distance >= 0.0 {
+                cache::write_start(self.manifold, near, cso);
+                return;
+            }
+        }
+        let ([n1, n2], contacts) = match corrected {
+            Some(contacts) => ([n1, n2], contacts),
+            None => (
+                normals,
+                manifold::contacts(cso, near, max_distance, scratch),
+            ),
         };
         self.manifold.local_n1 = n1;
         self.manifold.local_n2 = n2;
@@ -276,11 +282,17 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
 
     /// The contact's normals as the constraints leave them, if they do.
     #[inline(always)]
-    fn constrained(&self, normals: [Vec3; 2]) -> Option<[Vec3; 2]> {
+    fn constrained<B: Polytope>(
+        &self,
+        cso: &Cso<'_, Hull, B>,
+        swapped: bool,
+        max_distance: f64,
+        normals: [Vec3; 2],
+    ) -> Option<[Vec3; 2]> {
         match self.constraints {
             // Only parts of meshes have some.
             [Constraints::None, Constraints::None] => Some(normals),
-            constraints => constraints::project(constraints, self.pos12, normals),
+            both => constraints::correct(both, self.pos12, (cso, swapped), max_distance, normals),
         }
     }
 }

@@ -56,14 +56,4 @@ impl Contacts {
             len: 1,
         }
     }
-
-    pub(super) fn none() -> Self {
-        Self {
-            on_1: [f32x4::ZERO; 3],
-            on_2: [f32x4::ZERO; 3],
-            distance: f32x4::ZERO,
-            features: [[Feature::Vertex(0); 2]; MAX_POINTS],
-            len: 0,
-        }
-    }
 }

@@ -9,6 +9,7 @@
 
 mod clip;
 mod contacts;
+mod corrected;
 mod half_space;
 mod patch;
 mod plane;
@@ -16,7 +17,7 @@ mod polygon;
 mod reduce;
 mod sectors;
 
-use glam::{DVec3, Vec2};
+use glam::Vec2;
 
 use crate::query::{Feature, Proximity};
 use crate::support::{Cso, Polytope};
@@ -26,6 +27,7 @@ use plane::FacePlane;
 use reduce::Candidates;
 
 pub use contacts::{ContactPoint, Contacts, MAX_POINTS};
+pub use corrected::contacts_along;
 pub use half_space::half_space_contacts;
 
 /// Contacts nearer to each other than this share of the smaller shape's radius are one.
@@ -160,43 +162,9 @@ pub fn with_witnesses_on_faces<A: Polytope, B: Polytope>(
     }
 }
 
-/// The contacts along another `normal` than the query's: one that was corrected for the internal
-/// edges of a mesh. The witness, which belongs to the query's normal, is none of them. Distances
-/// are within `range`.
-pub fn contacts_along<A: Polytope, B: Polytope>(
-    cso: &Cso<'_, A, B>,
-    proximity: &Proximity,
-    normal: DVec3,
-    range: [f64; 2],
-    scratch: &mut ClipScratch,
-) -> Contacts {
-    let ClipScratch {
-        planes,
-        polygons,
-        candidates,
-    } = scratch;
-    let patch = Patch::new(cso, proximity, normal, planes);
-    let Some(patch) = &patch else {
-        return Contacts::none();
-    };
-    patch.clip(cso, polygons);
-    let corners = &polygons.corners;
-    let [least, most] = range.map(|distance| distance as f32);
-    let same = SAME_POINT * cso.smaller_radius() as f32;
-    let distances = |_, x, y| patch.distances(x, y);
-    let survey = candidates.set(corners, distances, least..=most, same);
-    let mut chosen = Chosen::default();
-    if let Some(deepest) = survey.deepest {
-        chosen.push(survey.deepest);
-        chosen.push_all(candidates.spread(corners, corners.at(deepest), same));
-    }
-    let witness = (range[0], proximity.features);
-    patch.contacts(cso, witness, (polygons, candidates), &chosen)
-}
-
 #[cfg(test)]
 mod tests {
-    use glam::Vec3;
+    use glam::{DVec3, Vec3};
     use parry3d::math::{Pose, Rotation};
 
     use super::*;

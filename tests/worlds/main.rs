@@ -4,6 +4,7 @@ mod character;
 mod determinism;
 mod fast_hull;
 mod hull_shape_world;
+mod inner_edges;
 mod mid_run;
 mod prepared_shapes;
 mod resting;

@@ -1,0 +1,63 @@
+//! Contacts along a normal that was corrected for the internal edges of a mesh or a compound.
+
+use glam::DVec3;
+
+use super::contacts::Contacts;
+use super::patch::Patch;
+use super::{Chosen, ClipScratch, SAME_DEPTH, SAME_POINT};
+use crate::query::{self, Feature, Proximity};
+use crate::stats::Cost;
+use crate::support::{Cso, FaceId, Polytope, VertexId};
+
+/// What stands beside the open end of a floor, and overlaps it a little from the side, is far beneath
+/// it along the corrected normal. Points deeper than this multiple of the query's depth are left out;
+/// what has sunk in as a plate does, upright, is up to six times as deep as the nearest way out.
+const ABSURD_DEPTH: f64 = 8.0;
+
+/// The contacts along another `normal` than the query's, nearer than `max_distance`: corners of the
+/// patch between the two faces that look along `normal` most. The query's features do not matter:
+/// they lie beside these faces wherever the correction is large. `None` if one of the faces is
+/// edge-on to `normal`.
+pub fn contacts_along<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    proximity: &Proximity,
+    normal: DVec3,
+    max_distance: f64,
+    scratch: &mut ClipScratch,
+) -> Option<Contacts> {
+    let ClipScratch {
+        planes,
+        polygons,
+        candidates,
+    } = scratch;
+    let [v1, v2] = query::vertices(cso, proximity.features);
+    let f1 = extreme_face(cso.shape_1, normal, v1);
+    let f2 = extreme_face(cso.shape_2, -cso.pose.direction_to_2(normal), v2);
+    let features = [f1, f2].map(Feature::Face);
+    let proximity = Proximity {
+        features,
+        ..*proximity
+    };
+    let patch = Patch::new(cso, &proximity, normal, planes)?;
+    patch.clip(cso, polygons);
+    let corners = &polygons.corners;
+    let scale = cso.smaller_radius();
+    let least = ABSURD_DEPTH * proximity.signed_distance.min(0.0) - SAME_DEPTH * scale;
+    let same = SAME_POINT * scale as f32;
+    let distances = |_, x, y| patch.distances(x, y);
+    let range = least as f32..=max_distance as f32;
+    let survey = candidates.set(corners, distances, range, same);
+    let mut chosen = Chosen::default();
+    if let Some(deepest) = survey.deepest {
+        chosen.push(survey.deepest);
+        chosen.push_all(candidates.spread(corners, corners.at(deepest), same));
+    }
+    let witness = (least, features);
+    Some(patch.contacts(cso, witness, (polygons, candidates), &chosen))
+}
+
+/// Of the faces at the extreme vertex in direction `dir`, the one that looks along it most.
+fn extreme_face(shape: &impl Polytope, dir: DVec3, start: VertexId) -> FaceId {
+    let (_, vertex) = shape.support(dir, start, &mut Cost::default());
+    shape.face_at(vertex, dir)
+}
