@@ -75,6 +75,15 @@ impl RelativePose {
         }
     }
 
+    /// The pose of shape 2 after it moved `by` so much, in frame 1.
+    #[inline]
+    pub(crate) fn moved(&self, by: DVec3) -> Self {
+        Self {
+            translation: self.translation + by,
+            ..*self
+        }
+    }
+
     /// A point of frame 2, in frame 1.
     #[inline]
     pub fn point_to_1(&self, p: DVec3) -> DVec3 {

@@ -76,6 +76,11 @@ pub const TOUCHING: f64 = 1e-10;
 /// of the smaller shape's radius: a tenth of the promised accuracy.
 pub const DEPTH_GAP: f64 = 1e-6;
 
+/// How far (relative to the smaller radius) shapes are moved apart to find the witness points of their
+/// depth. Wide enough for GJK to see a direction; so narrow that the normal's error, an angle that costs
+/// no more depth than [`DEPTH_GAP`], shifts no point by a tenth of that.
+pub const WITNESS_GAP: f64 = 1e-2;
+
 /// Points (relative to the pair's size) closer than this to a line or plane do not span an
 /// initial polytope: 1e5 roundings of f64, far below anything f32 input can resolve.
 pub const DEGENERATE: f64 = 1e-11;

@@ -8,7 +8,6 @@ use parry3d::shape::{PolygonalFeatureMap, Shape};
 use super::pair::{self, Pair, PairVisitor, Scratch};
 use super::scene::{Near, Seen};
 use crate::hull::Hull;
-use crate::manifold::with_witnesses_on_faces;
 use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Query};
 use crate::ray_cast::{Impact, RayCast, ray_cast};
@@ -132,7 +131,6 @@ impl Cast<'_> {
         if departs && !self.options.stop_at_penetration {
             return Some(None);
         }
-        let near = with_witnesses_on_faces(cso, &near, &mut scratch.clip);
         let near = Near::of_proximity(&near, seen);
         let slack = RAY_TOUCHING * cso.size();
         let status = if near.signed_distance < f64::from(self.target_distance()) - slack {

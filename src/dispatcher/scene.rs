@@ -12,7 +12,6 @@ use super::half_space;
 use super::others::HalfSpace;
 use super::pair::{self, Pair, PairVisitor, Scratch};
 use crate::gjk::{self, Closest, Outcome};
-use crate::manifold::with_witnesses_on_faces;
 use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Proximity, Query};
 use crate::simplex::Preferred;
@@ -263,7 +262,6 @@ impl PairVisitor for ContactQuery<'_> {
         Some(match answer {
             Answer::Apart(_) => None,
             Answer::Near(near) => {
-                let near = with_witnesses_on_faces(&cso, &near, &mut scratch.clip);
                 let seen = Seen::new(pair, &pose);
                 Some(Near::of_proximity(&near, &seen).contact())
             }

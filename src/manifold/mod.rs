@@ -19,7 +19,7 @@ mod sectors;
 
 use glam::Vec2;
 
-use crate::query::{Feature, Proximity};
+use crate::query::Proximity;
 use crate::support::{Cso, Polytope};
 use clip::Polygons;
 use patch::Patch;
@@ -135,33 +135,6 @@ pub fn contacts<A: Polytope, B: Polytope>(
     patch.contacts(cso, witness, (polygons, candidates), &chosen)
 }
 
-/// The query's answer, with witness points on both shapes where these overlap with two faces, or a face
-/// and an edge: a corner of the intersection of both.
-pub fn with_witnesses_on_faces<A: Polytope, B: Polytope>(
-    cso: &Cso<'_, A, B>,
-    proximity: &Proximity,
-    scratch: &mut ClipScratch,
-) -> Proximity {
-    use Feature::{Edge, Face};
-    let are_parallel = matches!(
-        proximity.features,
-        [Face(_), Face(_) | Edge(_)] | [Edge(_), Face(_)]
-    );
-    if proximity.signed_distance >= 0.0 || !are_parallel {
-        return *proximity;
-    }
-    let contacts = contacts(cso, proximity, 0.0, scratch);
-    let Some(first) = contacts.iter().next() else {
-        return *proximity;
-    };
-    let on_1 = first.on_1.as_dvec3();
-    Proximity {
-        on_1,
-        on_2: on_1 + proximity.normal * proximity.signed_distance,
-        ..*proximity
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use glam::{DVec3, Vec3};
@@ -171,7 +144,7 @@ mod tests {
     use crate::epa::EpaScratch;
     use crate::hull::Hull;
     use crate::pose::RelativePose;
-    use crate::query::{Answer, Memory, Query};
+    use crate::query::{Answer, Feature, Memory, Query};
     use crate::stats::Cost;
 
     fn prism(sides: u32, radius: f32) -> Hull {

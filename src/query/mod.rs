@@ -18,6 +18,7 @@ mod fan;
 mod feature;
 mod trail;
 mod walk;
+mod witness;
 
 pub use feature::{Feature, vertices};
 pub(crate) use feature::{Verdict, vertex_of};
@@ -311,15 +312,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         })
     }
 
-    fn overlapping(&self, depth: &Penetration) -> Answer {
-        let features = feature::of_simplex(self.cso, depth.face.iter(), depth.normal);
-        let [on_1, on_2] = feature::witnesses(self.cso, features, depth);
-        Answer::Near(Proximity {
-            signed_distance: -depth.depth,
-            normal: depth.normal,
-            on_1,
-            on_2,
-            features,
-        })
+    fn overlapping(&mut self, depth: &Penetration) -> Answer {
+        Answer::Near(witness::of_depth(self.cso, depth, self.cost))
     }
 }

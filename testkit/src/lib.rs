@@ -4,6 +4,7 @@
 pub mod bytes;
 pub mod cases;
 pub mod generate;
+pub mod kinds;
 pub mod memory;
 pub mod oracle;
 pub mod pair;

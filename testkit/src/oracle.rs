@@ -141,6 +141,17 @@ impl Solid {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
+    /// How far `point` is from the nearest point of its faces.
+    pub fn distance_to_surface(&self, point: DVec3) -> f64 {
+        self.faces
+            .iter()
+            .map(|face| {
+                let mut corners = face.map(|i| self.points[i as usize] - point).to_vec();
+                closest_to_origin(&mut corners).length()
+            })
+            .fold(f64::INFINITY, f64::min)
+    }
+
     /// The farthest that any of its own points is beyond any of its planes.
     pub fn concavity(&self) -> f64 {
         self.planes

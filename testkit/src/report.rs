@@ -20,7 +20,7 @@ struct Tally {
 }
 
 /// One checked answer: measured quantities, and what is wrong with it.
-#[derive(Default)]
+#[derive(Debug, Default)]
 pub struct Finding {
     measured: Vec<(&'static str, f64)>,
     wrong: Vec<String>,
@@ -33,6 +33,11 @@ impl Finding {
         self.require(value <= limit, || {
             format!("{quantity} {value:.1e} > {limit:.1e}")
         });
+    }
+
+    /// Whether nothing is wrong.
+    pub fn is_fine(&self) -> bool {
+        self.wrong.is_empty()
     }
 
     /// A yes-or-no demand.

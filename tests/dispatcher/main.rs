@@ -21,3 +21,4 @@ mod parry_regressions;
 mod round_pairs;
 mod scene_queries;
 mod walk;
+mod witnesses;

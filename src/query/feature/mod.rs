@@ -26,7 +26,6 @@ use glam::DVec3;
 
 use super::Proximity;
 use crate::both::both;
-use crate::epa::Penetration;
 use crate::gjk::SeparatingAxis;
 use crate::pose::RelativePose;
 use crate::stats::Cost;
@@ -277,45 +276,4 @@ fn parallelogram(
         corner(1, to),
         corner(0, to),
     ]
-}
-
-/// The witness points of a penetration depth, from its features where these determine them: a
-/// facet may be larger than the triangle that was found of it. Else they are one over the other, but
-/// perhaps beside a face.
-pub(super) fn witnesses<A: Polytope, B: Polytope>(
-    cso: &Cso<'_, A, B>,
-    features: [Feature; 2],
-    depth: &Penetration,
-) -> [DVec3; 2] {
-    let through = depth.normal * depth.depth;
-    match features {
-        [Feature::Vertex(v), _] => {
-            let on_1 = cso.shape_1.vertex(v);
-            [on_1, on_1 - through]
-        }
-        [_, Feature::Vertex(v)] => {
-            let on_2 = cso.pose.point_to_1(cso.shape_2.vertex(v));
-            [on_2 + through, on_2]
-        }
-        [Feature::Edge(e1), Feature::Edge(e2)] => {
-            edge_witnesses(cso, e1, e2).unwrap_or([depth.on_1, depth.on_1 - through])
-        }
-        _ => [depth.on_1, depth.on_1 - through],
-    }
-}
-
-/// The nearest points of two edges that cross.
-fn edge_witnesses<A: Polytope, B: Polytope>(
-    cso: &Cso<'_, A, B>,
-    e1: u32,
-    e2: u32,
-) -> Option<[DVec3; 2]> {
-    let [a0, a1] = cso.shape_1.edge(e1)?.map(|v| cso.shape_1.vertex(v));
-    let [b0, b1] = cso
-        .shape_2
-        .edge(e2)?
-        .map(|v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
-    let [s, t] = crossing(a0 - b0, a1 - a0, b1 - b0);
-    let on_edges = (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t);
-    on_edges.then(|| [a0.lerp(a1, s), b0.lerp(b1, t)])
 }
