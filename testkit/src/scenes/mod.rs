@@ -30,7 +30,7 @@ pub enum Scene {
     Coins,
     /// A brick wall.
     Wall,
-    /// A row of dominoes, of which the first falls.
+    /// Rows of up to 64 dominoes, of which the first of each falls.
     Dominoes,
     /// Prisms turning slowly about their axes on a hull.
     Spin,

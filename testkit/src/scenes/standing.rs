@@ -18,6 +18,7 @@ const FAST: Real = 12.0;
 const LEAN: Real = 0.6;
 /// Radians per second of the first domino, if it is a metre high.
 const PUSH: Vector = Vector::new(0.0, 0.0, -2.0);
+const DOMINO_ROW: usize = 64;
 /// Radius of the ball that is thrown at a wall, in lengths of a brick.
 const BALL: Real = 1.0;
 /// It is as heavy as stone where bricks are as heavy as wood.
@@ -65,7 +66,8 @@ impl Filler<'_> {
         }
         let radius = BALL * 2.0 * brick.x;
         let middle = 0.5 * height * (self.bodies / side) as Real;
-        let start = Vector::new(0.0, middle.max(radius), 4.0 * radius);
+        let aside = self.within(radius);
+        let start = Vector::new(aside, middle.max(radius), 4.0 * radius);
         let ball = RigidBodyBuilder::dynamic()
             .translation(start)
             .linvel(Vector::Z * (-THROW * (2.0 * brick.x).sqrt()))
@@ -79,17 +81,24 @@ impl Filler<'_> {
         self.shape(0).compute_local_aabb().half_extents()
     }
 
-    /// A row, of which the first is pushed.
+    /// Rows, of which the first of each is pushed.
     pub(super) fn dominoes(&mut self) {
         let domino = self.half_extents();
         let spacing = domino.y;
-        let row = spacing * self.bodies as Real;
-        containers::floor(self.world, row / 2.0 + 2.0 * domino.y);
+        let in_row = self.bodies.min(DOMINO_ROW);
+        let rows = self.bodies.div_ceil(in_row);
+        let half_length = spacing * in_row as Real / 2.0;
+        let aisle = 4.0 * domino.z;
+        let half_width = aisle * rows as Real / 2.0;
+        containers::floor(self.world, half_length.max(half_width) + 2.0 * domino.y);
         for i in 0..self.bodies {
-            let x = spacing * i as Real - row / 2.0;
-            let (body, _) = self.insert(i, Pose::translation(x, domino.y + GAP, 0.0));
-            if i == 0 {
-                self.world.physics.bodies[body].set_angvel(PUSH / (2.0 * domino.y).sqrt(), true);
+            let shake = self.within(0.05 * spacing);
+            let x = spacing * (i % in_row) as Real - half_length + shake;
+            let z = aisle * ((i / in_row) as Real + 0.5) - half_width;
+            let (body, _) = self.insert(i, Pose::translation(x, domino.y + GAP, z));
+            if i.is_multiple_of(in_row) {
+                let push = PUSH / (2.0 * domino.y).sqrt();
+                self.world.physics.bodies[body].set_angvel(push, true);
             }
         }
     }
