@@ -13,7 +13,7 @@ use glam::DVec3;
 use crate::simplex::{DistanceSubalgorithm, Nearest};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Support, VertexId};
-use crate::tolerance::{GJK_ABSOLUTE_GAP, GJK_RELATIVE_GAP, TOUCHING};
+use crate::tolerance::{GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, TOUCHING};
 
 /// Convergence is finite, and even the adversarial families need far fewer iterations; the
 /// bound only guards against a stall that no other test sees.
@@ -186,7 +186,7 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
     max_distance: f64,
     cost: &mut Cost,
 ) -> Outcome {
-    distance_within::<S, A, B>(cso, start, max_distance, GJK_ABSOLUTE_GAP, cost)
+    distance_within::<S, A, B>(cso, start, max_distance, GJK_GAP_OF_SIZE, cost)
 }
 
 /// As [`distance`], which ends as soon as its bounds differ by less than `gap`, relative to the pair's
@@ -228,7 +228,7 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
             });
         }
         let between = norm - lower_bound;
-        let converged = between <= GJK_RELATIVE_GAP * norm || between <= absolute_gap;
+        let converged = between <= GJK_GAP_OF_DISTANCE * norm || between <= absolute_gap;
         if converged || simplex.contains(&w) {
             return Outcome::Near(closest(&simplex, &nearest, lower_bound));
         }

@@ -47,7 +47,8 @@
 //! Frame 1 is that of a pair's first shape; normals point from shape 1 to shape 2. Positions are
 //! in the named shape's frame, lengths in the units of the shapes (metres in rapier). Distances
 //! are positive between separate shapes, and minus the penetration depth between overlapping
-//! ones. Input is f32, all arithmetic of queries f64.
+//! ones. Input is f32. Distances, depths and their proofs are computed in f64; scans of small hulls
+//! compare in f32 first and settle near ties in f64, and contacts beside the witness are clipped in f32.
 //!
 //! # Map
 //!
@@ -55,7 +56,8 @@
 //!
 //! | Module | What it is |
 //! |---|---|
-//! | [`tolerance`] | every epsilon, with its reason |
+//! | [`tolerance`] | the constants that bear on accuracy, each with its reason |
+//! | `tuning` | the constants that only steer a choice |
 //! | [`stats`] | which stage answered, at what cost |
 //! | [`pose`] | the second shape's pose in frame 1, in f64 |
 //! | [`support`] | extreme points of shapes and of their Minkowski difference |
@@ -119,6 +121,7 @@ pub mod simplex;
 pub mod stats;
 pub mod support;
 pub mod tolerance;
+mod tuning;
 
 pub use dispatcher::IsaGjkDispatcher;
 pub use hull::{Hull, HullError};

@@ -17,7 +17,8 @@ pub enum Stage {
     /// The features of the previous frame, re-evaluated, certified the distance or depth, and the contacts
     /// stayed on their places.
     Kept,
-    /// The features of the previous frame, re-evaluated, certified separation, distance or depth.
+    /// The features of the previous frame, re-evaluated, certified separation, distance or depth; or a
+    /// hull's lowest vertex over a half-space, with or without a previous frame, gave them.
     Feature,
     /// Features near the previous ones, or near that axis, did: walked to from facet to facet.
     Walk,

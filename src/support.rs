@@ -219,7 +219,7 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
         (-self.center()).normalize_or(DVec3::X)
     }
 
-    /// The point inside as a vertex, with the names of some that are.
+    /// The centre as a CSO vertex. It is no real vertex: `ids` are only hints for where climbs may start.
     pub fn center_as_vertex(&self, ids: [VertexId; 2]) -> CsoVertex {
         CsoVertex {
             w: self.center(),
@@ -228,7 +228,7 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
         }
     }
 
-    /// A point inside, with its origins on the two shapes.
+    /// A point inside: the difference of the two centres, in frame 1.
     #[inline]
     pub fn center(&self) -> DVec3 {
         self.shape_1.center() - self.pose.point_to_1(self.shape_2.center())

@@ -1,8 +1,14 @@
-//! Every tolerance of the crate, with its reason.
+//! The constants that bear on accuracy, each with its reason. Those that only steer a choice are in
+//! `tuning`.
 //!
-//! Shapes come with f32 coordinates (unit roundoff 6e-8) and all arithmetic of queries is f64
-//! (1e-16), so what is exact in the input stays decidable. A tolerance named "relative" is
-//! multiplied by a length of the shapes at hand; none is an absolute length.
+//! Shapes come with f32 coordinates (unit roundoff 6e-8). Distances, depths and their proofs are
+//! computed in f64 (1e-16), so that what is exact in the input stays decidable. Unless its comment
+//! names another factor, a tolerance is multiplied by a length of the shapes at hand; none is an
+//! absolute length.
+
+/// The cosine of 1 degree, and its sine.
+const COS_1_DEGREE: f64 = 0.999_847_7;
+const SIN_1_DEGREE: f64 = 0.017_452_4;
 
 /// A face is a set of hull triangles that deviate from one plane by at most this share of the
 /// hull's radius. Ten f32 roundings: flat caps become one polygon, and what a face certifies is
@@ -11,13 +17,13 @@ pub const FACE_FLATNESS: f64 = 6e-7;
 
 /// Neighbouring triangles are only joined to a face when their normals are within 1 degree
 /// (cosine), so that slivers of arbitrary direction cannot chain a face around a corner.
-pub const FACE_ANGLE_COS: f64 = 0.999_847_7;
+pub const FACE_ANGLE_COS: f64 = COS_1_DEGREE;
 
 /// Faces within 1 degree (cosine) of a larger one around which they lie are a cap with it:
 /// contacts are sought on all of them together. Distances are measured to the faces themselves, so
 /// that the angle decides only how many corners are looked at; f32 rounding and scanning noise
 /// stay below it, and the facets of round hulls of a thousand vertices above.
-pub const CAP_ANGLE_COS: f64 = 0.999_847_7;
+pub const CAP_ANGLE_COS: f64 = COS_1_DEGREE;
 
 /// A triangle lower than this share of the radius is a sliver: rounding of its corners can turn
 /// its plane by several degrees.
@@ -59,10 +65,10 @@ pub const SHORT_EDGE: f64 = 1e-2;
 pub const DIP: f64 = 4.0 * CONVEXITY;
 
 /// GJK stops when its bounds of the distance differ by less than this share of the distance...
-pub const GJK_RELATIVE_GAP: f64 = 1e-9;
+pub const GJK_GAP_OF_DISTANCE: f64 = 1e-9;
 
 /// ...or by less than this share of the pair's size: the rounding of f64 sums of coordinates.
-pub const GJK_ABSOLUTE_GAP: f64 = 1e-12;
+pub const GJK_GAP_OF_SIZE: f64 = 1e-12;
 
 /// ...or, in scene queries of cylinders and cones, by less than this share of it: a tenth of the promised
 /// accuracy. A search on a polytope ends at its vertices; one on a curved surface goes on and on.
@@ -89,8 +95,9 @@ pub const DEGENERATE: f64 = 1e-11;
 /// faces count as visible, so that they are replaced together and no sliver is left.
 pub const COPLANAR: f64 = 1e-14;
 
-/// What was normalised in f32, a quaternion or a normal, has a squared length this near to 1; one step
-/// of Newton's method then normalises it to f64 rounding.
+/// What was normalised in f32, a quaternion or a normal, has a squared length this near to 1. One step
+/// of Newton's method then normalises it up to 3/8 of the square of the excess: 4e-13 at this limit, and
+/// 1e-14 for usual input.
 pub const NEARLY_UNIT: f64 = 1e-6;
 
 /// Edges whose directions span less than this sine squared do not define a contact normal.
@@ -107,7 +114,7 @@ pub const GRAZING: f64 = 1e-6;
 
 /// Contacts keep their places while the normal turns by less than 1 degree (cosine) from one update to
 /// the next: a greater turn means that other features have come into contact.
-pub const KEPT_ANGLE_COS: f64 = 0.999_847_7;
+pub const KEPT_ANGLE_COS: f64 = COS_1_DEGREE;
 
 /// Contacts keep their places while their two points are apart, across the normal, by less than this
 /// share of the smaller shape's radius. Heaps of small bodies rest for anything from 1 % on; what
@@ -119,3 +126,52 @@ pub const KEPT_DRIFT: f64 = 2e-2;
 /// to the tilt of a body at rest, and must not take turns. Beyond it, a corner without a contact has
 /// become the deepest, and the contacts are chosen anew.
 pub const KEPT_DEPTH: f64 = 2e-5;
+
+/// A feature of a `HullShape` answers for directions within 1 degree of its normals, as in parry.
+pub(crate) const FEATURE_ANGLE_COS: f64 = COS_1_DEGREE;
+/// The same limit as a sine, for the slope of an edge.
+pub(crate) const FEATURE_ANGLE_SIN: f64 = SIN_1_DEGREE;
+
+/// Where the sine of a triangle's widest corner is below this, its normal has lost half of its digits.
+/// The nearest point is then chosen among all faces by distance, not by the signs of areas. Half of the
+/// digits balances the loss of trusting the normal against that of ignoring the interior.
+pub(crate) const MIN_TRIANGLE_SINE: f64 = 1e-8;
+
+/// Where the ratio of a tetrahedron's volume to the product of three edges at a corner is below this, the
+/// outer sides of its faces have lost half of their digits. All faces are then tried.
+pub(crate) const MIN_VOLUME_RATIO: f64 = 1e-8;
+
+/// The weights of a tetrahedron must reproduce the origin up to this share of a vertex's distance from
+/// it. Otherwise the faces are tried. It is above the rounding of all but nearly flat tetrahedra.
+pub(crate) const INTERIOR_RESIDUAL: f64 = 1e-12;
+
+/// Johnson's answer may miss the true distance by this share of the farthest vertex's distance. Beyond
+/// it, the backup procedure answers. The determinants of a nearly flat simplex are mere rounding and
+/// satisfy the halt condition by chance; a good answer's rounding is far below this.
+pub(crate) const JOHNSON_ERROR: f64 = 1e-10;
+
+/// A cached polytope proves a depth with this share of the tolerance of a search. The rest is far beyond
+/// rounding, so a search would find what a polytope proves, whatever is stored or lost.
+pub(crate) const PROOF_MARGIN: f64 = 0.999;
+
+/// Two heights computed in f32 may be in the wrong order by this much, for points in the unit ball and a
+/// direction whose largest coordinate is 1. Coordinates, direction, products and two sums are rounded,
+/// each by at most a unit of the sum of the products, which is below √3. So both heights together are
+/// off by 10 √3 units, and their difference by one more.
+pub(crate) const SCAN_ROUNDING: f32 = 20.0 / (1 << 24) as f32;
+
+/// A corner of the contact patch is as deep as the witness up to this share of the smaller shape's
+/// radius: the rounding of f32 face planes.
+pub(crate) const SAME_DEPTH: f64 = 2e-6;
+
+/// What lies outside an edge of a clip polygon by less than this share of the edge's extent, and of its
+/// distance from the origin of the contact plane, counts as inside: four roundings of the coordinates.
+/// So corners that meet up to rounding are never lost.
+pub(crate) const CLIP_SLACK: f32 = 4.0 * f32::EPSILON;
+
+/// A box without thickness gets this share of its largest half-extent as one, a hundredth of the promised
+/// accuracy. Its side faces then have normals.
+pub(crate) const MIN_BOX_THICKNESS: f64 = 1e-7;
+
+/// A correction of a unit normal by less than this in each coordinate is only rounding.
+pub(crate) const UNCORRECTED: f32 = 1e-6;

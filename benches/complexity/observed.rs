@@ -7,7 +7,7 @@ use glam::DVec3;
 use isa_gjk::simplex::{DistanceSubalgorithm, Voronoi};
 use isa_gjk::stats::Cost;
 use isa_gjk::support::{Cso, CsoVertex, Support};
-use isa_gjk::tolerance::{GJK_ABSOLUTE_GAP, GJK_RELATIVE_GAP, TOUCHING};
+use isa_gjk::tolerance::{GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, TOUCHING};
 
 /// How the next support direction is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,7 +58,7 @@ pub fn run<const WATCH: bool, A: Support, B: Support>(
         seen.iterations += 1;
         last = cso.support(-d, last.ids, cost);
         let gap = seen.distance - x.dot(last.w) / seen.distance;
-        let closed = gap <= GJK_RELATIVE_GAP * seen.distance || gap <= GJK_ABSOLUTE_GAP * size;
+        let closed = gap <= GJK_GAP_OF_DISTANCE * seen.distance || gap <= GJK_GAP_OF_SIZE * size;
         if closed || simplex.iter().any(|v| v.w == last.w) {
             if accelerated {
                 accelerated = false;

@@ -8,7 +8,7 @@ use parry3d::shape::{CompoundPseudoNormals, TrianglePseudoNormals};
 use super::cache;
 use crate::stats::Cost;
 use crate::support::{Cso, Support};
-use crate::tolerance::GRAZING;
+use crate::tolerance::{GRAZING, UNCORRECTED};
 
 /// What corrects the normals of a part's contacts. Computing it may cost more than finding out that
 /// there is no contact.
@@ -19,9 +19,6 @@ pub(super) enum Constraints<'a> {
     OfTriangle(&'a dyn Fn() -> Option<TrianglePseudoNormals>),
     OfPart(&'a CompoundPseudoNormals),
 }
-
-/// A correction of a unit normal by less than this in each coordinate is only rounding.
-pub(super) const UNCORRECTED: f32 = 1e-6;
 
 impl<'a> Constraints<'a> {
     pub fn given(constraints: Option<&'a dyn NormalConstraints>) -> Self {

@@ -7,7 +7,7 @@ use parry3d::query::details::contact_manifold_pfm_pfm;
 use parry3d::shape::PolygonalFeatureMap;
 
 use super::cache::{self, AxisFrame};
-use super::constraints::{self, Constraints, UNCORRECTED};
+use super::constraints::{self, Constraints};
 use super::half_space;
 use super::kept::{self, Present};
 use super::others::HalfSpace;
@@ -20,6 +20,7 @@ use crate::pose::RelativePose;
 use crate::query::{self, Answer, Memory, Proximity, Query, Verdict};
 use crate::stats::{Cost, SharedStats, Stage};
 use crate::support::{Cso, Polytope, Support};
+use crate::tolerance::UNCORRECTED;
 
 /// Brings a manifold up to date.
 pub(super) struct UpdateManifold<'a, M, C> {

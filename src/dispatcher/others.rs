@@ -11,7 +11,7 @@ use parry3d::shape::{
 use crate::pose::to_unit;
 use crate::primitive::{Cone, CuboidPolytope, Cylinder, Segment, TrianglePolytope};
 use crate::support::Support;
-use crate::tolerance::THINNEST;
+use crate::tolerance::{MIN_BOX_THICKNESS, THINNEST};
 
 /// The half-space beneath the plane through its origin with this normal.
 pub(super) struct HalfSpace {
@@ -46,17 +46,13 @@ impl Curved for ParryCone {
     }
 }
 
-/// A box without thickness is this thick in its largest extents, a hundredth of what answers may be off:
-/// sides of faces that have a length tell what is beyond them.
-const FLATTEST: f64 = 1e-7;
-
 /// `None` for a box that is a segment or a point: it has no faces with a plane.
 #[inline]
 pub(super) fn cuboid(cuboid: &Cuboid) -> Option<CuboidPolytope> {
     let half_extents = cuboid.half_extents.as_dvec3();
     let longest = DVec3::splat(half_extents.max_element());
     let thin = half_extents.cmple(longest * THINNEST);
-    let with_thickness = half_extents.max(longest * FLATTEST);
+    let with_thickness = half_extents.max(longest * MIN_BOX_THICKNESS);
     (thin.bitmask().count_ones() < 2).then(|| CuboidPolytope::new(with_thickness))
 }
 

@@ -17,7 +17,7 @@ use crate::query::{Answer, Memory, Proximity, Query};
 use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{Polytope, Support};
-use crate::tolerance::{GJK_ABSOLUTE_GAP, GJK_CURVED_GAP};
+use crate::tolerance::{GJK_CURVED_GAP, GJK_GAP_OF_SIZE};
 
 /// Whether two shapes touch or overlap. `None`, here and below: not a pair for us.
 pub(super) fn intersect(pos12: &Pose, shape_1: &dyn Shape, shape_2: &dyn Shape) -> Option<bool> {
@@ -190,7 +190,7 @@ impl PairVisitor for SeparationQuery<'_> {
     const CURVED: bool = true;
 
     fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, _: &mut Scratch) -> Option<Self::Answer> {
-        self.separation(pair, GJK_ABSOLUTE_GAP)
+        self.separation(pair, GJK_GAP_OF_SIZE)
     }
 
     fn visit_curved<B: Support>(

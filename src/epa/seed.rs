@@ -5,10 +5,7 @@ use glam::DVec3;
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Support};
 use crate::tolerance::DEGENERATE;
-
-/// A seed that spans at least this share of the pair's size is taken as it is; below, support
-/// points are tried too, and the best of all is taken.
-const GOOD: f64 = 1e-3;
+use crate::tuning::GOOD_SEED;
 
 /// Four points with volume: from `seeds` where they have any, else from support points.
 pub(super) fn tetrahedron<A: Support, B: Support>(
@@ -61,7 +58,7 @@ impl<A: Support, B: Support> Search<'_, '_, A, B> {
                 largest = m;
                 best = Some(candidate);
             }
-            m > GOOD * self.size
+            m > GOOD_SEED * self.size
         };
         let mut good = false;
         for seed in self.seeds {

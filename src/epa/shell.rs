@@ -13,22 +13,16 @@ use super::EpaScratch;
 use super::polytope::{ExpandingPolytope, lesser};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
-use crate::tolerance::DEPTH_GAP;
+use crate::tolerance::{DEPTH_GAP, PROOF_MARGIN};
+use crate::tuning::MIN_GROWABLE;
 
 /// Where hulls of a thousand vertices overlap by a fifth of their size, nineteen are usual.
 const MOST_VERTICES: usize = 32;
 /// A closed surface of triangles has no more.
 const MOST_FACES: usize = 2 * MOST_VERTICES - 4;
 
-/// A ball that stands out of a surface by more than a tenth is not that of the frame before: to
-/// start from the present features costs less.
-const NEAR: f64 = 0.9;
 /// A surface that has to grow more than this is no better to start from than they are.
 const MAX_EXPANSIONS: usize = 12;
-
-/// A shell proves less than the search would by this share of its tolerance: far beyond rounding.
-/// What it proves the search would find, too, whatever is kept of the pair or lost.
-const CERTAIN: f64 = 0.999;
 
 /// Stands for the difference's centre.
 const CENTER: [u16; 2] = [u16::MAX; 2];
@@ -66,7 +60,7 @@ impl Shell {
         scratch: &mut EpaScratch,
         cost: &mut Cost,
     ) -> bool {
-        let radius = known_depth - CERTAIN * DEPTH_GAP * cso.smaller_radius();
+        let radius = known_depth - PROOF_MARGIN * DEPTH_GAP * cso.smaller_radius();
         let polytope = &mut scratch.polytope;
         polytope.clear(cso.size(), radius);
         for &name in &self.vertices[..self.vertex_count.into()] {
@@ -76,7 +70,8 @@ impl Shell {
             }
         }
         let distance = self.distance(polytope);
-        distance >= radius || distance > NEAR * radius && self.grow(cso, radius, scratch, cost)
+        distance >= radius
+            || distance > MIN_GROWABLE * radius && self.grow(cso, radius, scratch, cost)
     }
 
     fn faces(&self) -> &[[u8; 3]] {

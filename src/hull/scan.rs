@@ -11,17 +11,12 @@ use glam::{DVec3, Vec3};
 use wide::{f32x4, f32x8};
 
 use crate::support::VertexId;
+use crate::tolerance::SCAN_ROUNDING;
 
 /// Up to so many vertices, as many as a mask has bits, a scan is quicker than a cold climb, with 64
 /// by a third, and no slower than a warm one. With 100 a warm climb is quicker by 2 %, and GJK's
 /// climbs from iteration to iteration are.
 pub(super) const LARGEST: usize = 64;
-
-/// How far two heights in f32 may be in the wrong order, for points in the unit ball and a direction
-/// whose largest coordinate is 1: coordinates, direction, products and two sums are rounded, each by
-/// at most the sum of their products, which is below √3; so both heights together by 10 √3 units, and
-/// their difference by one more.
-const ROUNDING: f32 = 20.0 / (1 << 24) as f32;
 
 /// Largest coordinates of directions that f32 takes as they are: nothing overflows, and what
 /// underflows is far below the rounding.
@@ -102,7 +97,7 @@ impl Scan {
         }
         let [low, high]: [f32x4; 2] = bytemuck::cast(highest);
         let [a, b, c, d] = low.fast_max(high).to_array();
-        let least = greater(greater(a, b), greater(c, d)) - ROUNDING * size as f32;
+        let least = greater(greater(a, b), greater(c, d)) - SCAN_ROUNDING * size as f32;
         let least = f32x8::splat(least);
         let mut candidates = 0;
         for (number, height) in heights[..self.rows.len()].iter().enumerate() {

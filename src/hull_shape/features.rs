@@ -7,10 +7,7 @@ use parry3d::shape::{FeatureId, PackedFeatureId, PolygonalFeature, PolygonalFeat
 use super::HullShape;
 use crate::hull::Hull;
 use crate::support::{FaceId, Polytope, VertexId};
-
-/// A feature answers for directions within one degree of its normals, as in parry.
-const COS_1_DEGREE: f64 = 0.999_847_7;
-const SIN_1_DEGREE: f64 = 0.017_452_4;
+use crate::tolerance::{FEATURE_ANGLE_COS, FEATURE_ANGLE_SIN};
 
 impl Hull {
     /// The feature that is extreme in direction `dir`, of length one: a face or an edge if it is
@@ -21,13 +18,13 @@ impl Hull {
         let Some(at) = self.place_around(face, vertex) else {
             return FeatureId::Face(face);
         };
-        if self.face_normal(face).dot(dir) >= COS_1_DEGREE {
+        if self.face_normal(face).dot(dir) >= FEATURE_ANGLE_COS {
             return FeatureId::Face(face);
         }
         let len = self.face_len(face);
         let level = |other: &VertexId| {
             let edge = self.vertex(*other) - self.vertex(vertex);
-            edge.dot(dir).abs() <= SIN_1_DEGREE * edge.length()
+            edge.dot(dir).abs() <= FEATURE_ANGLE_SIN * edge.length()
         };
         [at + 1, at + len - 1]
             .map(|i| self.face_vertex(face, i % len))

@@ -4,15 +4,12 @@ use glam::DVec3;
 
 use super::contacts::Contacts;
 use super::patch::Patch;
-use super::{Chosen, ClipScratch, SAME_DEPTH, SAME_POINT};
+use super::{Chosen, ClipScratch};
 use crate::query::{self, Feature, Proximity};
 use crate::stats::Cost;
 use crate::support::{Cso, FaceId, Polytope, VertexId};
-
-/// What stands beside the open end of a floor, and overlaps it a little from the side, is far beneath
-/// it along the corrected normal. Points deeper than this multiple of the query's depth are left out;
-/// what has sunk in as a plate does, upright, is up to six times as deep as the nearest way out.
-const ABSURD_DEPTH: f64 = 8.0;
+use crate::tolerance::SAME_DEPTH;
+use crate::tuning::{ABSURD_DEPTH, SAME_POINT};
 
 /// The contacts along another `normal` than the query's, nearer than `max_distance`: corners of the
 /// patch between the two faces that look along `normal` most. The query's features do not matter:

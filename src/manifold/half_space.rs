@@ -5,13 +5,14 @@ use wide::f64x4;
 
 use super::clip::Polygons;
 use super::contacts::{Contacts, MAX_POINTS};
-use super::plane::{EDGE_ON, Frame};
+use super::plane::Frame;
 use super::polygon::LANES;
-use super::{Chosen, ClipScratch, SAME_POINT};
+use super::{Chosen, ClipScratch};
 use crate::fours::{Vectors, as_f32};
 use crate::pose::RelativePose;
 use crate::query::{Feature, Proximity, vertex_of};
 use crate::support::Polytope;
+use crate::tuning::{EDGE_ON, SAME_POINT};
 
 /// The contacts of a polytope with the half-space in front of its deepest vertex, the witness of
 /// `proximity`: with it corners of the face around it. Of more corners than there is room for those that

@@ -21,6 +21,8 @@ use glam::Vec2;
 
 use crate::query::Proximity;
 use crate::support::{Cso, Polytope};
+use crate::tolerance::SAME_DEPTH;
+use crate::tuning::SAME_POINT;
 use clip::Polygons;
 use patch::Patch;
 use plane::FacePlane;
@@ -29,13 +31,6 @@ use reduce::Candidates;
 pub use contacts::{ContactPoint, Contacts, MAX_POINTS};
 pub use corrected::contacts_along;
 pub use half_space::half_space_contacts;
-
-/// Contacts nearer to each other than this share of the smaller shape's radius are one.
-const SAME_POINT: f32 = 1e-3;
-
-/// A corner of the contact patch is as deep as the witness up to this share of the smaller
-/// shape's radius: the rounding of f32 face planes.
-const SAME_DEPTH: f64 = 2e-6;
 
 /// Memory for manifolds, kept from one to the next so that none of them allocates.
 #[derive(Clone, Debug, Default)]

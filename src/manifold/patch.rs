@@ -11,11 +11,7 @@ use super::polygon::lanes;
 use super::reduce::Candidates;
 use crate::query::{Feature, Proximity};
 use crate::support::{Cso, FaceId, Polytope};
-
-/// A cap whose slope over the contact plane is below this lies on it. What is edge-on under its
-/// outline is then a wall beside it, and is left out. The outline passes such a wall only between
-/// corners of the rim at different heights, by a thirtieth of that difference.
-const LEVEL: f32 = 0.1;
+use crate::tuning::LEVEL_SLOPE;
 
 /// The surface of one shape: the face in contact, or all faces of the cap that it belongs to.
 struct Surface<'s> {
@@ -47,7 +43,7 @@ impl<'s> Surface<'s> {
             let mut others =
                 others.filter(|&other| other != face && shape.face_normal(other) != DVec3::ZERO);
             // A cap that turns edge-on has corners at which no plane tells its height.
-            let is_level = plane.slope_squared() < LEVEL * LEVEL;
+            let is_level = plane.slope_squared() < LEVEL_SLOPE * LEVEL_SLOPE;
             let is_whole = others.all(|other| {
                 let other = frame.plane(shape, other, sign);
                 more.extend(other);

@@ -7,9 +7,7 @@ use super::polygon::LANES;
 use crate::both::both;
 use crate::pose::RelativePose;
 use crate::support::{FaceId, Polytope};
-
-/// A face seen edge-on (cosine to the contact normal) has no usable projection.
-pub(super) const EDGE_ON: f64 = 0.05;
+use crate::tuning::EDGE_ON;
 
 /// The contact plane as a shape sees it. Its origin is the witness point of shape 1.
 pub(super) struct Frame {

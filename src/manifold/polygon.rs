@@ -3,16 +3,13 @@
 use glam::Vec2;
 use wide::f32x4;
 
+use crate::tolerance::CLIP_SLACK;
+
 /// Corners are looked at in fours: most faces have no more.
 pub(super) const LANES: usize = 4;
 
 /// The bits of all lanes.
 pub(super) const ALL: u32 = (1 << LANES) - 1;
-
-/// What lies outside of a side by less than this share of the side's extent, and of its distance from
-/// the contact plane's origin, counts as inside: four roundings of the coordinates. So corners that meet
-/// up to rounding are never lost.
-const SLACK: f32 = 4.0 * f32::EPSILON;
 
 /// A polygon; its last row is filled up with its first corner.
 #[derive(Clone, Debug)]
@@ -151,7 +148,7 @@ impl Row {
         self.along_y = along(self.y, next.y);
         // The sum of coordinates is not shorter.
         let length = self.along_x.abs() + self.along_y.abs();
-        self.slack = (length + self.x.abs() + self.y.abs()) * length * SLACK;
+        self.slack = (length + self.x.abs() + self.y.abs()) * length * CLIP_SLACK;
     }
 
     /// Whether a point is inside of these sides of a clockwise polygon.

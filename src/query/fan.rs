@@ -177,9 +177,8 @@ mod tests {
     use crate::query::feature::{self, Seeds, Verdict};
     use crate::query::walk::tests::{direction, random_pose};
     use crate::stats::Cost;
+    use crate::tolerance::DEPTH_GAP;
     use glam::Vec3;
-
-    const TOLERANCE: f64 = 1e-6;
 
     fn hull(dice: &mut oorandom::Rand64) -> Hull {
         let sizes = [(); 3].map(|()| 0.4 + 0.6 * dice.rand_float());
@@ -209,7 +208,7 @@ mod tests {
             let vertex = cso.support(normal, [0, 0], &mut cost);
             let mut next = walk::around(&cso, &vertex, normal);
             let candidate = (0..20).find_map(|_| {
-                match feature::certify(&cso, next?, f64::INFINITY, TOLERANCE, &mut cost) {
+                match feature::certify(&cso, next?, f64::INFINITY, DEPTH_GAP, &mut cost) {
                     Verdict::Beyond(side) => next = walk::across(&cso, &side),
                     Verdict::Unproved(candidate) => return Some(candidate),
                     _ => next = None,
@@ -222,10 +221,10 @@ mod tests {
             let depth = epa::penetration(&cso, seeds.as_slice(), scratch, &mut cost);
             let depth = depth.expect("they overlap").depth;
             let excess = -candidate.signed_distance - depth;
-            if holds_ball(&cso, &candidate, TOLERANCE) {
-                assert!(excess < 2.0 * TOLERANCE, "{excess} deeper than need be");
+            if holds_ball(&cso, &candidate, DEPTH_GAP) {
+                assert!(excess < 2.0 * DEPTH_GAP, "{excess} deeper than need be");
                 proved += 1;
-            } else if excess > 2.0 * TOLERANCE {
+            } else if excess > 2.0 * DEPTH_GAP {
                 others += 1;
             }
         }

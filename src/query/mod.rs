@@ -31,15 +31,8 @@ use crate::simplex::Preferred;
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
 use crate::tolerance::DEPTH_GAP;
+use crate::tuning::{FACET_WALK_RANGE, TILT};
 use feature::Seeds;
-
-/// Tangent of the angle by which a direction is turned towards where the next facet is to be
-/// expected. Hulls of a hundred vertices have dihedral angles around it; any value is correct.
-const TILT: f64 = 0.2;
-
-/// Shapes that are farther apart than this share of their size are mostly nearest at vertices and
-/// edges. A query that wants to know so far leaves these to GJK, without a walk over facets.
-const FAR: f64 = 0.1;
 
 /// What GJK and EPA count as in a query that goes on from a previous frame, and without one.
 pub(crate) const WARM: [Stage; 2] = [Stage::WarmGjk, Stage::WarmEpa];
@@ -234,7 +227,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     }
 
     fn is_far_sighted(&self) -> bool {
-        self.max_distance > FAR * self.cso.size()
+        self.max_distance > FACET_WALK_RANGE * self.cso.size()
     }
 
     /// GJK from vertices of the Minkowski difference, and EPA if the shapes overlap.

@@ -3,23 +3,8 @@
 use glam::DVec3;
 
 use super::Nearest;
-
-/// Above this sine of a corner, the product of its edges is as good a normal as that of any other.
-const WIDE_SINE: f64 = 1e-2;
-
-/// Below this sine of a triangle's widest corner its normal has lost half of its digits: the
-/// nearest point is then chosen among all faces by distance, rather than by the signs of areas.
-/// Half of the digits balances the loss of trusting the normal against that of ignoring the
-/// interior.
-const SLIVER_SINE: f64 = 1e-8;
-
-/// Below this ratio of a tetrahedron's volume to the product of three edges at a corner, the outer
-/// sides of its faces have lost half of their digits: all of the faces are tried.
-const FLAT_RATIO: f64 = 1e-8;
-
-/// How well the weights of a tetrahedron must reproduce the origin, relative to a vertex, to be
-/// believed without a look at the faces: above the rounding of all but nearly flat tetrahedra.
-const INSIDE: f64 = 1e-12;
+use crate::tolerance::{INTERIOR_RESIDUAL, MIN_TRIANGLE_SINE, MIN_VOLUME_RATIO};
+use crate::tuning::WIDE_SINE;
 
 /// A convex combination of N vertices.
 #[derive(Clone, Copy)]
@@ -170,7 +155,7 @@ fn widest_corner(ab: DVec3, bc: DVec3, ca: DVec3) -> (DVec3, bool) {
     } else {
         (ab.cross(bc), x * y)
     };
-    let trusted = normal.length_squared() > SLIVER_SINE * SLIVER_SINE * product;
+    let trusted = normal.length_squared() > MIN_TRIANGLE_SINE * MIN_TRIANGLE_SINE * product;
     (normal, !trusted)
 }
 
@@ -183,7 +168,8 @@ fn tetrahedron<T: Triangle>(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Combinati
         let chosen = inner.map(|volume| !(trusted && volume > 0.0));
         return nearest_face::<T>(a, b, c, d, chosen);
     };
-    let within = |y: DVec3| inside.distance() <= INSIDE * INSIDE * y.length_squared();
+    let within =
+        |y: DVec3| inside.distance() <= INTERIOR_RESIDUAL * INTERIOR_RESIDUAL * y.length_squared();
     if within(a) || within(b) || within(c) || within(d) {
         return inside;
     }
@@ -239,6 +225,6 @@ fn sub_volumes(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> ([f64; 4], bool) {
     let toward = a * -volume.signum();
     let (at_b, at_c, at_d) = (toward.dot(acd), toward.dot(adb), toward.dot(abc));
     let at_a = volume.abs() - (at_b + at_c + at_d);
-    let trusted = volume * volume > FLAT_RATIO * FLAT_RATIO * product;
+    let trusted = volume * volume > MIN_VOLUME_RATIO * MIN_VOLUME_RATIO * product;
     ([at_a, at_b, at_c, at_d], trusted)
 }

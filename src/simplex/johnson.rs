@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::faces::{Combination, proves_inside};
 use super::{DistanceSubalgorithm, Nearest};
+use crate::tolerance::JOHNSON_ERROR;
 
 /// Subsets in increasing order of their bit mask, by Cramer's rule, with the backup procedure
 /// (E. Gilbert, D. Johnson, S. Keerthi, *A fast procedure for computing the distance between
@@ -23,11 +24,6 @@ impl DistanceSubalgorithm for Johnson {
         found.into()
     }
 }
-
-/// The distance, relative to the farthest vertex, that an answer may miss the true one by before
-/// the backup procedure is asked. The determinants of a nearly flat simplex are mere rounding, and
-/// satisfy the halt condition by chance; 1e-10 is far above the rounding of a good answer.
-const TRUST: f64 = 1e-10;
 
 /// Δ_i(Y_s) at `[s][i]`, with the subset s as a bit mask.
 type Determinants<const N: usize, const S: usize> = [[f64; N]; S];
@@ -84,14 +80,14 @@ fn in_subset<const N: usize>(delta: &[f64; N], y: &[DVec3; N], s: usize) -> Opti
     }
 }
 
-/// Whether the distance is proved to within `TRUST`: ‖v‖ − min v·y_i/‖v‖ bounds its error.
+/// Whether the distance is proved to within `JOHNSON_ERROR`: ‖v‖ − min v·y_i/‖v‖ bounds its error.
 #[inline]
 fn certified<const N: usize>(y: &[DVec3; N], v: DVec3) -> bool {
     let reach = y
         .iter()
         .fold(0.0, |r: f64, p| r.max(p.length_squared()))
         .sqrt();
-    let (norm, allowed) = (v.length(), TRUST * reach);
+    let (norm, allowed) = (v.length(), JOHNSON_ERROR * reach);
     norm <= allowed || y.iter().all(|&p| v.dot(v - p) <= allowed * norm)
 }
 
