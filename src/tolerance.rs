@@ -48,9 +48,9 @@ pub const THINNEST: f64 = 1e-6;
 /// f32 decisions of parry's hull builder: of thousands of clouds down to a seventh of it none lost a corner.
 pub const THICK: f64 = 0.05;
 
-/// A point may be outside of the hull that was built around it by this share of the radius: half of what
-/// distances may be off.
-pub const LEFT_OUT: f64 = 1e-5;
+/// A point of a cloud may lie outside the hull that was built around it by this share of the radius. Two
+/// such hulls must leave the sum of all errors below the promise: see [`WORST_ERROR`].
+pub const LEFT_OUT: f64 = 4e-6;
 
 /// Two support values closer than this share of `radius * |direction|` tie for hill climbing:
 /// vertices that are coplanar up to f32 rounding must be seen as one plateau.
@@ -175,3 +175,43 @@ pub(crate) const MIN_BOX_THICKNESS: f64 = 1e-7;
 
 /// A correction of a unit normal by less than this in each coordinate is only rounding.
 pub(crate) const UNCORRECTED: f32 = 1e-6;
+
+/// The promise: distances and depths of solids are right up to this share of the larger radius, which is
+/// 1e-5 of the diameter of the larger bounding sphere.
+pub(crate) const PROMISED_ERROR: f64 = 2e-5;
+
+/// What the stages of one answer may add up to, as shares of the larger radius. The table in
+/// `docs/theory.md` says where each comes from. GJK's gap is left out: it is 1e-9 of the distance.
+pub(crate) const WORST_ERROR: f64 = POSE_ERROR
+    + CLIMB_ERROR
+    + FACE_ERROR
+    + PROJECTION_ERROR
+    + DEPTH_ERROR
+    + SAME_DEPTH
+    + OUTPUT_ERROR
+    + CLOUD_ERROR;
+
+/// A normalised quaternion is off by 3/8 of the excess squared, and a rotation by twice that.
+const POSE_ERROR: f64 = NEARLY_UNIT * NEARLY_UNIT;
+/// What a climb may lose, on each shape: four plateaus on dented hulls, two dents on long needles.
+const CLIMB_ERROR: f64 = 2.0
+    * if 2.0 * PLATEAU > CONVEXITY {
+        4.0 * PLATEAU
+    } else {
+        2.0 * CONVEXITY
+    };
+/// The corners of a face lie beneath its plane; a face of each shape.
+const FACE_ERROR: f64 = 2.0 * FACE_FLATNESS;
+/// The origin may project beside the facet.
+const PROJECTION_ERROR: f64 = DEPTH_GAP;
+/// A depth is certified within one gap, and the facet at hand is preferred within another.
+const DEPTH_ERROR: f64 = 2.0 * DEPTH_GAP;
+/// Depths, which are at most two radii, are rounded to f32 by half a unit.
+const OUTPUT_ERROR: f64 = f32::EPSILON as f64;
+/// Points of a cloud outside its hull; on each shape.
+const CLOUD_ERROR: f64 = 2.0 * LEFT_OUT;
+
+const _: () = assert!(
+    WORST_ERROR <= PROMISED_ERROR,
+    "the errors add up to more than the promise"
+);
