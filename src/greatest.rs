@@ -34,8 +34,9 @@ impl Greatest {
         self.names = greater.bitselect(bytemuck::cast(names), self.names);
     }
 
-    /// Of values that tie one in the lowest lane, if any of them is there. (Halves against each other
-    /// and then their lanes: fewer steps that wait for each other than lane by lane.)
+    /// The greatest value. Of lanes that tie, lane 0 wins, then 2, 1 and 3; within a lane, the first
+    /// value offered. (The two halves are compared first, and then the lanes of the result: a shorter
+    /// dependency chain than lane by lane.)
     #[inline(always)]
     pub fn top(self) -> Top {
         let [low, high]: [f64x2; 2] = bytemuck::cast(self.values);

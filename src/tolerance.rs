@@ -29,8 +29,8 @@ pub const CAP_ANGLE_COS: f64 = COS_1_DEGREE;
 /// its plane by several degrees.
 pub const SLIVER: f64 = 4e-6;
 
-/// How deep (relative to the radius) an edge may be a dent: sixteen f32 roundings. Of a needle a
-/// climb may lose many times what its dents are deep.
+/// Greatest depth of a concave edge, relative to the radius: sixteen f32 roundings. On a needle a climb
+/// may lose more than the depth of its dents.
 pub const CONVEXITY: f64 = 1e-6;
 
 /// How far (relative to the radius) a hull may reach beyond the plane of a face: many dents in a row

@@ -68,7 +68,7 @@ impl Slot {
         (span.is_some() && self.span == span) || self.prepared.is_of(points)
     }
 
-    /// Notes that it was proved again. What it has, at its place in the table.
+    /// Marks the slot as proved again and returns a reference to its hull, if it has one.
     #[inline(always)]
     fn used(&mut self, place: usize, clock: u64, span: Option<Span>) -> Option<HullRef> {
         self.last_use = clock;

@@ -138,7 +138,7 @@ impl PartialEq for Identities {
     }
 }
 
-/// What inherits from no point.
+/// Index meaning "no old point matched".
 const NONE: usize = MAX_POINTS;
 
 /// For each new contact the old one whose data it takes over: that between the same features. What

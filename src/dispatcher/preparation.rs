@@ -94,8 +94,8 @@ impl Preparation {
     }
 }
 
-/// All that some thread has, by fingerprints of the polyhedra. It is asked only about polyhedra that a
-/// thread meets for the first time.
+/// Prepared hulls in use by any thread, keyed by fingerprint. A thread looks a polyhedron up here only
+/// on first use.
 struct InUse {
     shared: BTreeMap<u64, Vec<Weak<Preparation>>>,
     /// At how many fingerprints those are dropped that nobody uses any more.

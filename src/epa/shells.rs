@@ -9,8 +9,8 @@ use crate::support::{Cso, Polytope, Support};
 const PLACES: usize = 1 << PLACE_BITS;
 const PLACE_BITS: u32 = 11;
 
-/// Of a shell that is new or proved a depth, this many other pairs are refused the place: where there
-/// are more pairs than places, some prove and the others lose little.
+/// A new entry, or one that has just proved a depth, survives this many attempts to replace it. Where
+/// there are more pairs than places, some prove and the others lose little.
 const PATIENCE: u8 = 16;
 
 /// What was expanded for pairs in earlier frames, for proofs that their depths are the least. A pair

@@ -90,7 +90,7 @@ impl Plane {
             offset = offset.max(level);
             for side in surface.leaving(corner) {
                 let level = height(side.to.into());
-                // No number is missing here, which `max` would have to look into.
+                // No value is NaN here, so the NaN check of `f64::max` is not needed.
                 offset = if level > offset { level } else { offset };
             }
         }

@@ -19,8 +19,8 @@ pub(super) struct EdgeGraph {
     more: Box<[Star]>,
 }
 
-/// Neighbours of a vertex, clockwise seen from outside. It is filled up with the first one, which
-/// comes after the last one. Where there are more, the last one is also the first in the next star.
+/// Neighbours of a vertex, clockwise seen from outside. Unused slots repeat the first
+/// neighbour, which comes after the last one. Where there are more, the last one is also the first in the next star.
 ///
 /// Each vertex has one, so that it is found without another look into memory; and by its alignment
 /// it is on one line of the cache.

@@ -79,9 +79,9 @@ impl Greatest {
 }
 
 impl Candidates {
-    /// Becomes these corners, with the `distances` of a row at its places. Those whose distance is within
-    /// `range` are wanted, those beyond it come last, and those before it are none. What is nearer than
-    /// `same` to the origin is there.
+    /// Becomes these corners, with the `distances` of a row at its places. Corners within
+    /// `range` are candidates, farther ones are fallbacks, nearer ones are dropped. One that is nearer
+    /// than `same` to the origin counts as being there.
     #[inline(always)]
     pub fn set(
         &mut self,

@@ -221,7 +221,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
     }
 
-    /// Bounds of a depth that are no farther apart than this are one.
+    /// Two bounds on a depth that differ by at most this count as equal.
     fn tolerance(&self) -> f64 {
         DEPTH_GAP * self.cso.smaller_radius()
     }
