@@ -37,6 +37,10 @@ pub const CONVEXITY: f64 = 1e-6;
 /// make a bowl. The noise of scanned plates stays below it.
 pub const BOWL: f64 = 5e-5;
 
+/// Where a surface bends at an edge by less than this share of the radius, its two triangles may as well
+/// have the other diagonal: ten times what a dent may be deep.
+pub const FLAT_EDGE: f64 = 1e-5;
+
 /// A triangle lower than this share of the radius may face inwards by the rounding of its corners;
 /// a higher one that does is a fold of the surface. Ten f32 roundings.
 pub const FOLD: f64 = 6e-7;

@@ -3,42 +3,65 @@
 //! A dispatcher is handed bare references: it cannot know whether the polyhedron at an address
 //! is the one that was there before. So each use compares the polyhedron's points with those the
 //! hull was built from (a `memcmp`, some 20 ns for 100 vertices; of large hulls a `Digest` of them,
-//! 130 ns for 1,000). Equal points have an equal hull, whatever the allocator or the user did in
+//! 130 ns for 1,000), and the edges that these points do not determine, which are those across flat sides.
+//! Equal polyhedra have an equal hull, whatever the allocator or the user did in
 //! between; the table is a pure function of the shapes, and no answer depends on its history. Where the user promises that no shape changes for
 //! a while, the first use in that span compares for all of them.
 //!
-//! Each thread has a table of its own, which needs no lock; the hulls themselves are shared.
+//! Each thread has a table of its own, which needs no lock; the hulls themselves are shared. Nothing
+//! says that a polyhedron is gone: its hull goes when it was not used for long ([`Aging`]).
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-use glam::Vec3;
 use parry3d::shape::ConvexPolyhedron;
 
+use super::aging::{Aging, KEEP_BYTES};
 use super::int_hash::IntMap;
 use super::preparation::Preparation;
 use super::unchanged::Span;
 use crate::hull::Hull;
 
-/// Bytes of prepared hulls that are kept without asking whether they are still in use.
-const KEEP_BYTES: usize = 16 << 20;
-
-/// An entry that was not asked for during this many look-ups may go when room is needed.
-const STALE_AFTER: u64 = 1 << 20;
+/// Room is made after this many pairs, and whenever this share of what may stay has been prepared.
+const LOOK_AFTER: u32 = 4096;
+const LOOK_AFTER_BYTES: usize = KEEP_BYTES as usize / 4;
 
 /// A thread's prepared hulls.
-#[derive(Default)]
 pub(super) struct HullTable {
     entries: IntMap<Address, usize>,
     /// The last address and slot met of each class of addresses, before the map is asked.
     recent: Recent,
     slots: Vec<Slot>,
     bytes: usize,
-    sweep_at: usize,
-    /// How often references have ended.
-    sweeps: u64,
-    clock: u64,
+    /// How many bytes there may be, and pairs until then, when room is made.
+    look_at: usize,
+    look_after: u32,
+    /// Which no other table has, and this one neither after references have ended.
+    state: u64,
+    aging: Aging,
     /// The span that is under way.
     span: Option<Span>,
+}
+
+impl Default for HullTable {
+    fn default() -> Self {
+        Self {
+            entries: IntMap::default(),
+            recent: Recent::default(),
+            slots: Vec::new(),
+            bytes: 0,
+            look_at: KEEP_BYTES as usize + LOOK_AFTER_BYTES,
+            look_after: LOOK_AFTER,
+            state: new_state(),
+            aging: Aging::default(),
+            span: None,
+        }
+    }
+}
+
+fn new_state() -> u64 {
+    static STATES: AtomicU64 = AtomicU64::new(0);
+    STATES.fetch_add(1, Ordering::Relaxed)
 }
 
 /// Where a polyhedron keeps its points.
@@ -47,7 +70,8 @@ type Address = usize;
 struct Slot {
     address: Address,
     prepared: Arc<Preparation>,
-    last_use: u64,
+    /// When it was used last, by the table's `Aging`.
+    used: u64,
     /// In which it was proved last.
     span: Option<Span>,
 }
@@ -57,23 +81,28 @@ impl Slot {
         Self {
             address,
             prepared: Preparation::of(polyhedron),
-            last_use: 0,
+            used: 0,
             span: None,
         }
     }
 
-    /// Whether it is of the points at its address: it was proved in the span that is under way, or is now.
+    /// Whether it is of the polyhedron at its address: it was proved in the span that is under way, or is now.
     #[inline(always)]
-    fn is_of(&self, points: &[Vec3], span: Option<Span>) -> bool {
-        (span.is_some() && self.span == span) || self.prepared.is_of(points)
+    fn is_of(&self, polyhedron: &ConvexPolyhedron, span: Option<Span>) -> bool {
+        (span.is_some() && self.span == span) || self.prepared.is_of(polyhedron)
     }
 
     /// Marks the slot as proved again and returns a reference to its hull, if it has one.
     #[inline(always)]
-    fn used(&mut self, place: usize, clock: u64, span: Option<Span>) -> Option<HullRef> {
-        self.last_use = clock;
+    fn proved(&mut self, place: usize, now: u64, span: Option<Span>) -> Option<HullRef> {
+        self.used = now;
         self.span = span;
         self.prepared.hull().is_some().then_some(HullRef(place))
+    }
+
+    /// By which it is noticed that the same polyhedron is back, if it is where it was.
+    fn key(&self) -> u64 {
+        self.prepared.key() ^ self.address as u64
     }
 
     /// What goes with it, if nobody else has it.
@@ -117,7 +146,7 @@ pub(super) struct LastProved<'a>(Option<Proof<'a>>);
 struct Proof<'a> {
     polyhedron: &'a ConvexPolyhedron,
     place: HullRef,
-    sweeps: u64,
+    state: u64,
 }
 
 impl<'a> Find<'a> for LastProved<'a> {
@@ -125,7 +154,7 @@ impl<'a> Find<'a> for LastProved<'a> {
     fn find(&mut self, table: &mut HullTable, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
         if let Some(proof) = self.0
             && std::ptr::eq(proof.polyhedron, polyhedron)
-            && proof.sweeps == table.sweeps
+            && proof.state == table.state
         {
             return Some(proof.place);
         }
@@ -133,7 +162,7 @@ impl<'a> Find<'a> for LastProved<'a> {
         *self = Self(Some(Proof {
             polyhedron,
             place,
-            sweeps: table.sweeps,
+            state: table.state,
         }));
         Some(place)
     }
@@ -144,54 +173,71 @@ impl HullTable {
     #[inline(always)]
     pub fn begin(&mut self, span: Option<Span>) {
         self.span = span;
-        if self.bytes > self.sweep_at.max(KEEP_BYTES) {
-            self.make_room();
+        self.look_after -= 1;
+        if self.look_after == 0 {
+            self.look_after();
         }
     }
 
-    /// Drops what seems unused.
+    /// Drops what seems unused, if it is much.
     #[cold]
     #[inline(never)]
-    fn make_room(&mut self) {
-        self.sweeps += 1;
-        let oldest = self.clock.saturating_sub(STALE_AFTER);
-        self.slots.retain(|slot| slot.last_use >= oldest);
-        self.entries.clear();
-        self.recent = Recent::default();
-        for (i, slot) in self.slots.iter().enumerate() {
-            self.entries.insert(slot.address, i);
+    fn look_after(&mut self) {
+        self.look_after = LOOK_AFTER;
+        self.aging.pass();
+        if self.bytes > KEEP_BYTES as usize {
+            self.make_room();
+            self.look_at = self.bytes.max(KEEP_BYTES as usize) + LOOK_AFTER_BYTES;
         }
+    }
+
+    fn make_room(&mut self) {
+        let is_old = self.aging.limit();
+        let before = self.slots.len();
+        let aging = &mut self.aging;
+        self.slots.retain(|slot| {
+            let goes = is_old(slot.used);
+            if goes {
+                aging.dropped(slot.key(), slot.used);
+            }
+            !goes
+        });
+        if self.slots.len() == before {
+            return;
+        }
+        self.state = new_state();
+        self.slots.shrink_to(2 * self.slots.len());
+        self.recent = Recent::default();
+        self.entries = (self.slots.iter().enumerate())
+            .map(|(i, slot)| (slot.address, i))
+            .collect();
         self.bytes = self.slots.iter().map(Slot::bytes).sum();
-        self.sweep_at = 2 * self.bytes;
+        Preparation::forget_unused();
     }
 
     /// The hull of a polyhedron, built if it is new; `None` if it has none.
     #[inline(always)]
     fn find(&mut self, polyhedron: &ConvexPolyhedron) -> Option<HullRef> {
-        let points = polyhedron.points();
-        let address = points.as_ptr() as Address;
+        let address = polyhedron.points().as_ptr() as Address;
         let (known, place) = *self.recent.class(address);
         if known == address
             && let Some(slot) = self.slots.get_mut(place)
-            && slot.is_of(points, self.span)
+            && slot.is_of(polyhedron, self.span)
         {
-            self.clock += 1;
-            return slot.used(place, self.clock, self.span);
+            return slot.proved(place, self.aging.now(), self.span);
         }
         self.find_among_all(polyhedron)
     }
 
     #[inline(never)]
     fn find_among_all(&mut self, polyhedron: &ConvexPolyhedron) -> Option<HullRef> {
-        let points = polyhedron.points();
-        let address = points.as_ptr() as Address;
+        let address = polyhedron.points().as_ptr() as Address;
         let place = match self.entries.get(&address).copied() {
-            Some(i) if self.slots[i].is_of(points, self.span) => i,
+            Some(i) if self.slots[i].is_of(polyhedron, self.span) => i,
             known => self.insert(address, polyhedron, known),
         };
         *self.recent.class(address) = (address, place);
-        self.clock += 1;
-        self.slots[place].used(place, self.clock, self.span)
+        self.slots[place].proved(place, self.aging.now(), self.span)
     }
 
     #[cold]
@@ -202,7 +248,12 @@ impl HullTable {
         known: Option<usize>,
     ) -> usize {
         let slot = Slot::new(address, polyhedron);
+        self.aging.prepared(slot.key(), slot.bytes());
         self.bytes += slot.bytes();
+        if self.bytes > self.look_at {
+            // In the next pair: this one holds references.
+            self.look_after = 1;
+        }
         if let Some(i) = known {
             self.bytes -= self.slots[i].bytes();
             self.slots[i] = slot;

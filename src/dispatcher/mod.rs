@@ -1,5 +1,6 @@
 //! The plug: rapier's narrow phase asks [`IsaGjkDispatcher`] instead of parry's own dispatcher.
 
+mod aging;
 mod cache;
 mod cast;
 mod composite;
@@ -76,6 +77,32 @@ impl IsaGjkDispatcher {
     /// ```
     pub fn with_unchanged_shapes<R>(&self, step: impl FnOnce() -> R) -> R {
         self.unchanged.run(step)
+    }
+
+    /// Drops what all dispatchers have prepared of plain hulls, and the memory that queries work in: in
+    /// this thread now, in others before their next query.
+    ///
+    /// Hulls that are gone also go by themselves, but not at once: a thread keeps 32 MiB of them. Call
+    /// it when a level is over. It changes no answer; a hull that is still there is prepared again
+    /// when it is asked about next.
+    ///
+    /// ```
+    /// use isa_gjk::IsaGjkDispatcher;
+    /// use rapier3d::prelude::*;
+    ///
+    /// let dispatcher = IsaGjkDispatcher::default();
+    /// for _level in 0..2 {
+    ///     let mut world = PhysicsWorld {
+    ///         narrow_phase: NarrowPhase::with_query_dispatcher(dispatcher.clone()),
+    ///         ..PhysicsWorld::default()
+    ///     };
+    ///     world.step();
+    ///     drop(world);
+    ///     dispatcher.trim();
+    /// }
+    /// ```
+    pub fn trim(&self) {
+        pair::trim();
     }
 }
 

@@ -1,12 +1,17 @@
 //! From parry's shapes to polytopes that the kernels can work on.
 
-use std::cell::RefCell;
+use std::any::{Any, TypeId};
+use std::cell::Cell;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use parry3d::math::{Pose, Real};
-use parry3d::shape::{ConvexPolyhedron, PolygonalFeatureMap, Shape, ShapeType, TypedShape};
+use parry3d::shape::{
+    ConvexPolyhedron, PolygonalFeatureMap, RoundConvexPolyhedron, Shape, ShapeType, TypedShape,
+};
 
 use super::hulls::{EachProved, Find, HullRef, HullTable};
 use super::others::{self, Curved, HalfSpace};
+use super::preparation::Preparation;
 use super::unchanged::Span;
 use crate::epa::{EpaScratch, Shells};
 use crate::hull::Hull;
@@ -21,6 +26,48 @@ use crate::support::{Cso, Polytope, Support};
 struct Workbench {
     hulls: HullTable,
     scratch: Scratch,
+    /// How often all had been asked to trim when it was made.
+    trims: u64,
+}
+
+/// How often all threads were asked to trim.
+static TRIMS: AtomicU64 = AtomicU64::new(0);
+
+thread_local! {
+    static WORKBENCH: Cell<Option<Box<Workbench>>> = const { Cell::new(None) };
+}
+
+/// Drops what threads keep: this one now, others before their next query.
+pub(super) fn trim() {
+    TRIMS.fetch_add(1, Ordering::Relaxed);
+    Workbench::with(|_| ());
+    Preparation::forget_unused();
+}
+
+impl Workbench {
+    /// Works on that of this thread, which is out of its place meanwhile: whoever asks within a query (a
+    /// user's `NormalConstraints`), or while the thread ends, works on a new one.
+    #[inline(always)]
+    fn with<T>(work: impl FnOnce(&mut Self) -> T) -> T {
+        let trims = TRIMS.load(Ordering::Relaxed);
+        let kept = WORKBENCH.try_with(Cell::take).ok().flatten();
+        let mut bench = match kept {
+            Some(bench) if bench.trims == trims => bench,
+            _ => Self::new(trims),
+        };
+        let answer = work(&mut bench);
+        let _ = WORKBENCH.try_with(|place| place.set(Some(bench)));
+        answer
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn new(trims: u64) -> Box<Self> {
+        Box::new(Self {
+            trims,
+            ..Self::default()
+        })
+    }
 }
 
 /// Memory to work in.
@@ -29,10 +76,6 @@ pub(super) struct Scratch {
     pub epa: EpaScratch,
     pub clip: ClipScratch,
     pub shells: Shells,
-}
-
-thread_local! {
-    static WORKBENCH: RefCell<Workbench> = RefCell::default();
 }
 
 /// A hull with a rounded border of this radius around it.
@@ -147,18 +190,18 @@ enum AnyHull<'a> {
 }
 
 impl<'a> AnyHull<'a> {
+    /// By the type that it is: what a user's shape shows as its typed shape may be a likeness only.
     #[inline]
     fn of(shape: &'a dyn Shape) -> Option<Self> {
-        // The typed shape of a `HullShape` is a plain one.
-        if shape.shape_type() == ShapeType::Custom {
-            return shape.as_shape::<HullShape>().map(Self::Prepared);
-        }
-        match shape.as_typed_shape() {
-            TypedShape::ConvexPolyhedron(hull) => Some(Self::Plain(hull, 0.0)),
-            TypedShape::RoundConvexPolyhedron(round) => {
-                Some(Self::Plain(&round.inner_shape, round.border_radius))
-            }
-            _ => None,
+        let shape_type = (shape as &dyn Any).type_id();
+        if shape_type == TypeId::of::<ConvexPolyhedron>() {
+            let hull = shape.as_shape()?;
+            Some(Self::Plain(hull, 0.0))
+        } else if shape_type == TypeId::of::<HullShape>() {
+            shape.as_shape().map(Self::Prepared)
+        } else {
+            let round: &RoundConvexPolyhedron = shape.as_shape()?;
+            Some(Self::Plain(&round.inner_shape, round.border_radius))
         }
     }
 }
@@ -269,7 +312,7 @@ pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
 ) -> Option<V::Answer> {
     match [side_1.is_hull(), side_2.is_hull()] {
         [true, true] => {
-            WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
+            Workbench::with(|Workbench { hulls, scratch, .. }| {
                 hulls.begin(span);
                 let first = side_1.prepare(hulls)?;
                 // Two colliders with one shape, which many worlds are full of, need one proof.
@@ -313,6 +356,10 @@ impl<'s, 'a, F: Find<'a>> Besides<'s, 'a, F> {
     /// Visits the hull and another shape; `None` if that is not known, or too flat or too small.
     #[inline(never)]
     fn visit<V: PairVisitor>(&mut self, other: &dyn Shape, visitor: &mut V) -> Option<V::Answer> {
+        // What such a shape shows as its typed shape may be a likeness only.
+        if other.shape_type() == ShapeType::Custom {
+            return None;
+        }
         match other.as_typed_shape() {
             TypedShape::Cuboid(cuboid) => {
                 let cuboid = others::cuboid(cuboid);
@@ -390,7 +437,7 @@ impl<'s, 'a, F: Find<'a>> Besides<'s, 'a, F> {
         border: Real,
         visit: impl FnOnce(&Pair<'_, B>, &mut Scratch) -> Option<T>,
     ) -> Option<T> {
-        WORKBENCH.with_borrow_mut(|Workbench { hulls, scratch }| {
+        Workbench::with(|Workbench { hulls, scratch, .. }| {
             hulls.begin(self.span);
             let prepared = self.side.prepare(hulls)?;
             let pair = Pair {

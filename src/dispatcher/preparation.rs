@@ -12,7 +12,7 @@ use parry3d::shape::ConvexPolyhedron;
 
 use super::digest::Digest;
 use crate::hull::Hull;
-use crate::hull::topology::{fingerprint, same_points};
+use crate::hull::topology::{Diagonals, fingerprint, hull_and_diagonals, same_points};
 
 /// What is prepared of a polyhedron. Whether it is of this one is to be proved by
 /// [`is_of`](Self::is_of).
@@ -21,6 +21,9 @@ pub(super) struct Preparation {
     /// `None` where no hull can be built: such a shape is left to parry.
     hull: Option<Hull>,
     source: Source,
+    diagonals: Diagonals,
+    /// The fingerprint of the polyhedron.
+    key: u64,
 }
 
 /// By what the points are known again that it was built from.
@@ -35,40 +38,48 @@ enum Source {
 
 impl Preparation {
     /// That of another polyhedron with the same points and edges, if one is in use; else a new one.
-    ///
-    /// Points are compared, of many the digest. Edges count by the fingerprint: should it ever deceive,
-    /// the hull has other diagonals on its faces, and is as good.
     pub fn of(polyhedron: &ConvexPolyhedron) -> Arc<Self> {
         let key = fingerprint(polyhedron);
-        let points = polyhedron.points();
-        let known = InUse::with(|in_use| in_use.find(key, points));
+        let known = InUse::with(|in_use| in_use.find(key, polyhedron));
         // Other threads need not wait until it is built. Of those that build the same, one will be
         // the first.
         known.unwrap_or_else(|| {
-            let new = Arc::new(Self::new(polyhedron));
+            let new = Arc::new(Self::new(key, polyhedron));
             InUse::with(|in_use| {
                 in_use
-                    .find(key, points)
-                    .unwrap_or_else(|| in_use.add(key, new))
+                    .find(key, polyhedron)
+                    .unwrap_or_else(|| in_use.add(new))
             })
         })
     }
 
-    fn new(polyhedron: &ConvexPolyhedron) -> Self {
+    fn new(key: u64, polyhedron: &ConvexPolyhedron) -> Self {
         let points = polyhedron.points();
-        let hull = Hull::try_from(polyhedron).ok();
+        let (hull, diagonals) = hull_and_diagonals(polyhedron);
+        let hull = hull.ok();
         let own = hull.as_ref().map(Hull::points);
         let source = match Digest::of(points) {
             Some(digest) => Source::Digest(digest.into()),
             None if own.is_some_and(|own| same_points(own, points)) => Source::Hull,
             None => Source::Points(points.into()),
         };
-        Self { hull, source }
+        Self {
+            hull,
+            source,
+            diagonals,
+            key,
+        }
     }
 
-    /// Whether it was made of these points; of many, up to the chance that [`Digest`] leaves.
+    /// Whether it was made of this polyhedron; of many points, up to the chance that [`Digest`]
+    /// leaves.
     #[inline]
-    pub fn is_of(&self, points: &[Vec3]) -> bool {
+    pub fn is_of(&self, polyhedron: &ConvexPolyhedron) -> bool {
+        self.has_points(polyhedron.points()) && self.diagonals.are_of(polyhedron)
+    }
+
+    #[inline]
+    fn has_points(&self, points: &[Vec3]) -> bool {
         match &self.source {
             Source::Digest(digest) => digest.is_of(points),
             Source::Hull => {
@@ -76,6 +87,11 @@ impl Preparation {
             }
             Source::Points(source) => same_points(source, points),
         }
+    }
+
+    /// Those that are equal have the same; others seldom do.
+    pub fn key(&self) -> u64 {
+        self.key
     }
 
     #[inline]
@@ -90,7 +106,12 @@ impl Preparation {
             Source::Digest(_) => size_of::<Digest>(),
             Source::Hull => 0,
         };
-        size_of::<Self>() + hull + source
+        size_of::<Self>() + hull + source + self.diagonals.heap_bytes()
+    }
+
+    /// Forgets those that no thread has any more.
+    pub fn forget_unused() {
+        InUse::with(InUse::sweep);
     }
 }
 
@@ -113,22 +134,32 @@ impl InUse {
         work(&mut IN_USE.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    fn find(&self, key: u64, points: &[Vec3]) -> Option<Arc<Preparation>> {
+    fn find(&self, key: u64, polyhedron: &ConvexPolyhedron) -> Option<Arc<Preparation>> {
         let mut alike = self.shared.get(&key)?.iter().filter_map(Weak::upgrade);
-        alike.find(|prepared| prepared.is_of(points))
+        alike.find(|prepared| prepared.is_of(polyhedron))
     }
 
-    fn add(&mut self, key: u64, new: Arc<Preparation>) -> Arc<Preparation> {
-        let is_used = |prepared: &Weak<Preparation>| prepared.strong_count() > 0;
+    fn add(&mut self, new: Arc<Preparation>) -> Arc<Preparation> {
         if self.shared.len() >= self.sweep_at {
-            self.shared.retain(|_, alike| alike.iter().any(is_used));
-            self.sweep_at = 2 * self.shared.len() + 1;
+            self.sweep();
         }
-        let alike = self.shared.entry(key).or_default();
+        let alike = self.shared.entry(new.key).or_default();
         alike.retain(is_used);
         alike.push(Arc::downgrade(&new));
         new
     }
+
+    fn sweep(&mut self) {
+        self.shared.retain(|_, alike| {
+            alike.retain(is_used);
+            !alike.is_empty()
+        });
+        self.sweep_at = 2 * self.shared.len() + 1;
+    }
+}
+
+fn is_used(prepared: &Weak<Preparation>) -> bool {
+    prepared.strong_count() > 0
 }
 
 #[cfg(test)]
@@ -160,15 +191,15 @@ mod tests {
         assert!(Arc::ptr_eq(&here, &there));
         let higher = Preparation::of(&pyramid(1.5, false));
         assert!(!Arc::ptr_eq(&here, &higher));
-        assert!(higher.is_of(pyramid(1.5, false).points()));
+        assert!(higher.is_of(&pyramid(1.5, false)));
     }
 
     /// The names of features depend on the edges.
     #[test]
     fn other_edges_are_another_polyhedron() {
         let [one, other] = [false, true].map(|diagonal| Preparation::of(&pyramid(1.0, diagonal)));
-        assert!(one.is_of(pyramid(1.0, true).points()));
-        assert!(!Arc::ptr_eq(&one, &other));
+        assert!(one.is_of(&pyramid(1.0, false)) && !one.is_of(&pyramid(1.0, true)));
+        assert!(other.is_of(&pyramid(1.0, true)) && !other.is_of(&pyramid(1.0, false)));
     }
 
     #[test]

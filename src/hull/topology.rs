@@ -5,13 +5,13 @@
 //! vertex have one cyclic order, and neighbours in that order span the triangles again.
 
 use std::cmp::Ordering;
-use std::hash::{DefaultHasher, Hash, Hasher};
 
 use glam::{DVec2, DVec3, Vec3};
 use parry3d::shape::ConvexPolyhedron;
 
 use super::build::MAX_VERTICES;
 use super::{Hull, HullError};
+use crate::tolerance::FLAT_EDGE;
 
 /// The hull of a polyhedron; that of its points where its surface is not a convex triangulation of
 /// them all.
@@ -21,28 +21,88 @@ impl TryFrom<&ConvexPolyhedron> for Hull {
     type Error = HullError;
 
     fn try_from(polyhedron: &ConvexPolyhedron) -> Result<Self, HullError> {
-        let points = polyhedron.points();
-        // All of them are vertices, but for those inside of flat sides: a hull builder would leave too
-        // many, and take seconds.
-        if points.len() > MAX_VERTICES {
-            return Err(HullError::TooManyPoints);
-        }
-        triangles(polyhedron)
-            .and_then(|triangles| Self::in_order(points.to_vec(), &triangles).ok())
-            .map_or_else(|| Self::from_points(points), Ok)
+        hull_and_diagonals(polyhedron).0
+    }
+}
+
+/// The hull of a polyhedron, and what edges it depends on.
+pub(crate) fn hull_and_diagonals(
+    polyhedron: &ConvexPolyhedron,
+) -> (Result<Hull, HullError>, Diagonals) {
+    let points = polyhedron.points();
+    // All of them are vertices, but for those inside of flat sides: a hull builder would leave too
+    // many, and take seconds.
+    if points.len() > MAX_VERTICES {
+        return (Err(HullError::TooManyPoints), Diagonals::none(polyhedron));
+    }
+    let surface = Surface::of(polyhedron).and_then(|surface| {
+        let hull = Hull::in_order(points.to_vec(), &surface.triangles).ok()?;
+        Some((hull, surface.flat_edges))
+    });
+    match surface {
+        Some((hull, flat)) => (Ok(hull), Diagonals::of(polyhedron, flat.into_iter())),
+        None => (Hull::from_points(points), Diagonals::all(polyhedron)),
     }
 }
 
 /// A number that depends on nothing but the points and edges of a polyhedron, of which its hull is
-/// made; two that differ hardly ever share it.
+/// made; others seldom share it.
 pub(crate) fn fingerprint(polyhedron: &ConvexPolyhedron) -> u64 {
-    // This hasher has no seed.
-    let mut hasher = DefaultHasher::new();
-    hasher.write(bytemuck::cast_slice(polyhedron.points()));
-    for edge in polyhedron.edges() {
-        edge.vertices.hash(&mut hasher);
+    let mix = |hash: u64, word: u64| {
+        let mixed = (hash ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        mixed ^ mixed >> 32
+    };
+    let coordinates = bytemuck::cast_slice::<Vec3, u32>(polyhedron.points());
+    let points = coordinates.iter().map(|&bits| u64::from(bits));
+    let edges = polyhedron.edges().iter().map(|edge| {
+        let [a, b] = edge.vertices.map(u64::from);
+        a << 32 | b
+    });
+    points.chain(edges).fold(0, mix)
+}
+
+/// The edges that a hull depends on besides its points.
+///
+/// Those across which the surface bends are in any triangulation of the points. The others may have
+/// been the other diagonal of their two triangles.
+#[derive(Debug)]
+pub(crate) struct Diagonals {
+    /// Of all edges.
+    count: usize,
+    /// Which edge it is, and its ends.
+    edges: Box<[(u32, [u32; 2])]>,
+}
+
+impl Diagonals {
+    /// Edges that are looked up in their order.
+    fn of(polyhedron: &ConvexPolyhedron, ids: impl Iterator<Item = u32>) -> Self {
+        let edges = polyhedron.edges();
+        Self {
+            count: edges.len(),
+            edges: ids.map(|id| (id, edges[id as usize].vertices)).collect(),
+        }
     }
-    hasher.finish()
+
+    fn all(polyhedron: &ConvexPolyhedron) -> Self {
+        Self::of(polyhedron, 0..polyhedron.edges().len() as u32)
+    }
+
+    /// Where the points alone decide that there is no hull.
+    fn none(polyhedron: &ConvexPolyhedron) -> Self {
+        Self::of(polyhedron, 0..0)
+    }
+
+    /// Whether a polyhedron with the same points has the same hull.
+    #[inline]
+    pub fn are_of(&self, polyhedron: &ConvexPolyhedron) -> bool {
+        let edges = polyhedron.edges();
+        let is_there = |&(id, ends): &(u32, [u32; 2])| edges[id as usize].vertices == ends;
+        edges.len() == self.count && self.edges.iter().all(is_there)
+    }
+
+    pub fn heap_bytes(&self) -> usize {
+        size_of_val(&*self.edges)
+    }
 }
 
 /// Whether two polyhedra have the same points and edges, so that their hulls are the same.
@@ -59,41 +119,93 @@ pub(crate) fn same_points(a: &[Vec3], b: &[Vec3]) -> bool {
 
 /// The triangles of a polyhedron, counter-clockwise from outside; `None` if they cannot be told.
 pub(crate) fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
-    let points = polyhedron.points();
-    if points.iter().any(|p| !p.is_finite()) {
-        return None;
-    }
-    let inside = points.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / points.len() as f64;
-    let (first, mut targets) = neighbor_rows(points.len(), polyhedron);
-    let mut triangles = Vec::with_capacity(2 * points.len());
-    let mut angles = Vec::new();
-    for v in 0..points.len() {
-        let row = &mut targets[first[v] as usize..first[v + 1] as usize];
-        let here = points[v].as_dvec3();
-        let outward = (here - inside).try_normalize()?;
-        let (x, y) = outward.any_orthonormal_pair();
-        // Turn counter-clockwise about `outward`, whatever the handedness of the pair.
-        let y = if x.cross(y).dot(outward) > 0.0 { y } else { -y };
-        angles.clear();
-        angles.extend(row.iter().map(|&w| {
-            let edge = points[w as usize].as_dvec3() - here;
-            (DVec2::new(edge.dot(x), edge.dot(y)), w)
-        }));
-        angles.sort_unstable_by(|a, b| by_angle(a.0, b.0));
-        for (i, &(_, w)) in angles.iter().enumerate() {
-            let next = angles[(i + 1) % angles.len()].1;
-            // Each triangle is met at all of its corners: keep it at the lowest.
-            if (v as u32) < w && (v as u32) < next {
-                triangles.push([v as u32, w, next]);
+    Some(Surface::of(polyhedron)?.triangles)
+}
+
+/// A triangulated surface.
+struct Surface {
+    triangles: Vec<[u32; 3]>,
+    /// The edges across which it hardly bends.
+    flat_edges: Vec<u32>,
+}
+
+impl Surface {
+    fn of(polyhedron: &ConvexPolyhedron) -> Option<Self> {
+        let (points, edges) = (polyhedron.points(), polyhedron.edges());
+        if points.iter().any(|p| !p.is_finite()) {
+            return None;
+        }
+        let inside = points.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / points.len() as f64;
+        let squares = points.iter().map(|p| p.as_dvec3().distance_squared(inside));
+        let flatness = FLAT_EDGE * squares.fold(0.0, f64::max).sqrt();
+        let (first, rows) = edge_rows(points.len(), polyhedron);
+        let mut triangles = Vec::with_capacity(2 * points.len());
+        let mut flat_edges = Vec::new();
+        let mut fan = Vec::new();
+        for v in 0..points.len() {
+            let here = points[v].as_dvec3();
+            let outward = (here - inside).try_normalize()?;
+            let (x, y) = outward.any_orthonormal_pair();
+            // Turn counter-clockwise about `outward`, whatever the handedness of the pair.
+            let y = if x.cross(y).dot(outward) > 0.0 { y } else { -y };
+            let v = v as u32;
+            fan.clear();
+            fan.extend(
+                rows[first[v as usize]..first[v as usize + 1]]
+                    .iter()
+                    .map(|&id| {
+                        let [a, b] = edges[id as usize].vertices;
+                        let end = a ^ b ^ v;
+                        let edge = points[end as usize].as_dvec3() - here;
+                        let seen = DVec2::new(edge.dot(x), edge.dot(y));
+                        FanEdge {
+                            id,
+                            end,
+                            edge,
+                            seen,
+                        }
+                    }),
+            );
+            fan.sort_unstable_by(|a, b| by_angle(a.seen, b.seen));
+            for (i, side) in fan.iter().enumerate() {
+                let next = &fan[(i + 1) % fan.len()];
+                // Each triangle is met at all of its corners: keep it at the lowest.
+                if v < side.end && v < next.end {
+                    triangles.push([v, side.end, next.end]);
+                }
+                let last = &fan[(i + fan.len() - 1) % fan.len()];
+                if v < side.end && is_flat([last.edge, side.edge, next.edge], flatness) {
+                    flat_edges.push(side.id);
+                }
             }
         }
+        Some(Self {
+            triangles,
+            flat_edges,
+        })
     }
-    Some(triangles)
+}
+
+/// An edge as seen from one of its ends.
+struct FanEdge {
+    id: u32,
+    /// The other end.
+    end: u32,
+    edge: DVec3,
+    /// From outside.
+    seen: DVec2,
+}
+
+/// Whether the surface bends at the second of three successive edges at a vertex by less than a height.
+fn is_flat([last, edge, next]: [DVec3; 3], height: f64) -> bool {
+    let (before, after) = (last.cross(edge), edge.cross(next));
+    let area = before.length_squared().max(after.length_squared()).sqrt();
+    before.dot(next).abs() <= height * area
 }
 
 /// Compressed rows of the edges at each vertex.
-fn neighbor_rows(count: usize, polyhedron: &ConvexPolyhedron) -> (Vec<u32>, Vec<u32>) {
-    let mut first = vec![0_u32; count + 1];
+fn edge_rows(count: usize, polyhedron: &ConvexPolyhedron) -> (Vec<usize>, Vec<u32>) {
+    let mut first = vec![0; count + 1];
     for edge in polyhedron.edges() {
         for v in edge.vertices {
             first[v as usize + 1] += 1;
@@ -103,15 +215,14 @@ fn neighbor_rows(count: usize, polyhedron: &ConvexPolyhedron) -> (Vec<u32>, Vec<
         first[v + 1] += first[v];
     }
     let mut fill = first.clone();
-    let mut targets = vec![0_u32; first[count] as usize];
-    for edge in polyhedron.edges() {
-        let [a, b] = edge.vertices;
-        for (from, to) in [(a, b), (b, a)] {
-            targets[fill[from as usize] as usize] = to;
-            fill[from as usize] += 1;
+    let mut rows = vec![0; first[count]];
+    for (id, edge) in polyhedron.edges().iter().enumerate() {
+        for v in edge.vertices {
+            rows[fill[v as usize]] = id as u32;
+            fill[v as usize] += 1;
         }
     }
-    (first, targets)
+    (first, rows)
 }
 
 /// Counter-clockwise from the positive x axis.

@@ -1,12 +1,14 @@
 //! Shapes come and go, are mutated in place, and are given the addresses of shapes that died: no
 //! answer may come from the dead.
 
+use std::thread;
+
 use isa_gjk::IsaGjkDispatcher;
-use parry3d::math::Vector;
+use parry3d::math::{Pose, Vector};
 use parry3d::shape::{ConvexPolyhedron, SharedShape};
 use testkit::cases::Hull;
 use testkit::generate::{Dice, hull_of};
-use testkit::memory::Memory;
+use testkit::memory::{Memory, cold_manifold};
 use testkit::report::Report;
 use testkit::scene::random_scene;
 
@@ -118,4 +120,60 @@ fn check_shapes_mutated_in_place(corners: usize) {
         memory.workspace = None;
     }
     report.conclude();
+}
+
+/// A square pyramid, over either diagonal of its base, with its points in this list.
+fn pyramid(mut points: Vec<Vector>, other_diagonal: bool) -> SharedShape {
+    let base = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+    points.extend(base.map(|[x, z]| Vector::new(x, 0.0, z)));
+    points.push(Vector::new(0.0, 1.0, 0.0));
+    let mut triangles = vec![[0, 4, 1], [1, 4, 2], [2, 4, 3], [3, 4, 0]];
+    triangles.extend(if other_diagonal {
+        [[0, 1, 3], [1, 2, 3]]
+    } else {
+        [[0, 1, 2], [0, 2, 3]]
+    });
+    SharedShape::convex_mesh(points, &triangles).expect("parry takes it")
+}
+
+/// The names of features, and with them the order of points, depend on the edges.
+#[test]
+fn the_same_points_with_other_edges_are_another_shape() {
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut dice = Dice::new(8);
+    let cuboid = SharedShape::cuboid(0.7, 0.2, 0.7);
+    let mut shape = pyramid(Vec::with_capacity(5), false);
+    let (mut came_again, mut in_contact) = (0, 0);
+    for turn in 0..60 {
+        let address = |shape: &SharedShape| {
+            let polyhedron = shape.as_convex_polyhedron().expect("a polyhedron");
+            polyhedron.points().as_ptr().addr()
+        };
+        let before = address(&shape);
+        drop(shape);
+        let mut lists: Vec<Vec<Vector>> = (0..20).map(|_| Vec::with_capacity(5)).collect();
+        let again = lists.iter().position(|list| list.as_ptr().addr() == before);
+        let points = lists.swap_remove(again.unwrap_or(0));
+        shape = pyramid(points, turn % 2 == 0);
+        came_again += usize::from(address(&shape) == before);
+        let mut small = || dice.range(-0.1, 0.1) as f32;
+        let turned = Vector::new(small(), 0.3 + small(), small());
+        let pose = Pose::new(Vector::new(small(), -0.19 + 0.1 * small(), small()), turned);
+        let manifold = || {
+            let dispatcher = IsaGjkDispatcher::default();
+            format!(
+                "{:?}",
+                cold_manifold(&dispatcher, &pose, [&shape, &cuboid], 0.02)
+            )
+        };
+        let here = format!(
+            "{:?}",
+            cold_manifold(&dispatcher, &pose, [&shape, &cuboid], 0.02)
+        );
+        in_contact += usize::from(here.contains("dist"));
+        let fresh = thread::scope(|scope| scope.spawn(manifold).join().expect("an answer"));
+        assert_eq!(here, fresh, "turn {turn}");
+    }
+    assert!(came_again > 10, "the allocator reused no address");
+    assert!(in_contact > 30, "only {in_contact} contacts");
 }

@@ -20,5 +20,6 @@ mod no_pair_lost;
 mod parry_regressions;
 mod round_pairs;
 mod scene_queries;
+mod unusual_callers;
 mod walk;
 mod witnesses;

@@ -1,0 +1,230 @@
+//! Queries from where nobody expects them: within another query, while a thread ends, and with shapes
+//! that are not what they show.
+
+use std::cell::RefCell;
+use std::thread;
+
+use isa_gjk::IsaGjkDispatcher;
+use parry3d::bounding_volume::{Aabb, BoundingSphere};
+use parry3d::mass_properties::MassProperties;
+use parry3d::math::{Pose, Real, Vector};
+use parry3d::query::details::NormalConstraints;
+use parry3d::query::{
+    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, PointProjection,
+    PointQuery, QueryDispatcher, Ray, RayCast, RayIntersection,
+};
+use parry3d::shape::{
+    Ball, Cuboid, FeatureId, PolygonalFeature, PolygonalFeatureMap, Shape, ShapeType, SharedShape,
+    SupportMap, TypedShape,
+};
+use testkit::generate::Dice;
+use testkit::memory::cold_manifold;
+
+/// Asks the dispatcher about its shapes before it lets a normal pass.
+struct Asks {
+    dispatcher: IsaGjkDispatcher,
+    shapes: [SharedShape; 2],
+    answers: RefCell<Vec<Option<Real>>>,
+}
+
+impl Asks {
+    fn ask(&self) -> Option<Real> {
+        let pose = Pose::translation(0.3, 0.2, 0.1);
+        let manifold = cold_manifold(&self.dispatcher, &pose, self.shapes.each_ref(), 0.1);
+        Some(manifold?.find_deepest_contact()?.dist)
+    }
+}
+
+impl NormalConstraints for Asks {
+    fn project_local_normal_mut(&self, _: &mut Vector) -> bool {
+        self.answers.borrow_mut().push(self.ask());
+        true
+    }
+}
+
+#[test]
+fn a_query_within_a_query_is_answered() {
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut dice = Dice::new(141);
+    let mut hull = || dice.hull(30, 1.0).shape;
+    let asks = Asks {
+        dispatcher: dispatcher.clone(),
+        shapes: [hull(), hull()],
+        answers: RefCell::default(),
+    };
+    let outer = [hull(), hull()];
+    let pose = Pose::translation(0.4, 0.3, 0.2);
+    let mut manifold = ContactManifold::<(), ()>::new();
+    for _ in 0..3 {
+        let [a, b] = &outer;
+        dispatcher
+            .contact_manifold_convex_convex(
+                &pose,
+                &**a,
+                &**b,
+                Some(&asks),
+                None,
+                0.1,
+                &mut manifold,
+            )
+            .expect("supported");
+    }
+    let alone = cold_manifold(&dispatcher, &pose, outer.each_ref(), 0.1).expect("supported");
+    let [within, alone] = [&manifold, &alone].map(|m| m.find_deepest_contact().map(|p| p.dist));
+    let (within, alone) = (within.expect("a contact"), alone.expect("a contact"));
+    assert!((within - alone).abs() < 1e-5);
+    let answers = asks.answers.borrow();
+    assert!(answers.len() >= 3 && answers[0].is_some());
+    assert!(answers.iter().all(|&answer| answer == asks.ask()));
+}
+
+#[test]
+fn a_thread_that_ends_may_ask() {
+    struct AsksAtTheEnd(Option<(Asks, Option<Real>)>);
+    impl Drop for AsksAtTheEnd {
+        fn drop(&mut self) {
+            let (asks, expected) = self.0.take().expect("set");
+            let answer = asks.ask();
+            assert!(answer == expected && answer.is_some());
+            asks.answers.borrow_mut().push(answer);
+            DONE.store(true, std::sync::atomic::Ordering::Relaxed);
+        }
+    }
+    static DONE: std::sync::atomic::AtomicBool = std::sync::atomic::AtomicBool::new(false);
+    thread_local! {
+        static LAST: RefCell<AsksAtTheEnd> = const { RefCell::new(AsksAtTheEnd(None)) };
+    }
+    let asking = thread::spawn(|| {
+        let mut dice = Dice::new(142);
+        let asks = Asks {
+            dispatcher: IsaGjkDispatcher::default(),
+            shapes: [(); 2].map(|()| dice.hull(30, 1.0).shape),
+            answers: RefCell::default(),
+        };
+        // What is used first goes last, on most systems; ours is to be gone before.
+        LAST.with(|_| ());
+        let expected = asks.ask();
+        LAST.with(|last| last.borrow_mut().0 = Some((asks, expected)));
+    });
+    asking.join().expect("no panic");
+    assert!(DONE.load(std::sync::atomic::Ordering::Relaxed));
+}
+
+/// A ball that shows itself as another shape.
+#[derive(Clone)]
+struct Shows {
+    ball: Ball,
+    shown: SharedShape,
+}
+
+impl RayCast for Shows {
+    fn cast_local_ray_and_get_normal(
+        &self,
+        ray: &Ray,
+        max: Real,
+        solid: bool,
+    ) -> Option<RayIntersection> {
+        self.ball.cast_local_ray_and_get_normal(ray, max, solid)
+    }
+}
+
+impl PointQuery for Shows {
+    fn project_local_point(&self, point: Vector, solid: bool) -> PointProjection {
+        self.ball.project_local_point(point, solid)
+    }
+
+    fn project_local_point_and_get_feature(&self, point: Vector) -> (PointProjection, FeatureId) {
+        self.ball.project_local_point_and_get_feature(point)
+    }
+}
+
+impl SupportMap for Shows {
+    fn local_support_point(&self, direction: Vector) -> Vector {
+        self.ball.local_support_point(direction)
+    }
+}
+
+impl PolygonalFeatureMap for Shows {
+    fn local_support_feature(&self, direction: Vector, feature: &mut PolygonalFeature) {
+        feature.vertices[0] = self.local_support_point(direction);
+        feature.num_vertices = 1;
+    }
+}
+
+impl Shape for Shows {
+    fn compute_local_aabb(&self) -> Aabb {
+        self.ball.compute_local_aabb()
+    }
+
+    fn compute_local_bounding_sphere(&self) -> BoundingSphere {
+        self.ball.compute_local_bounding_sphere()
+    }
+
+    fn clone_dyn(&self) -> Box<dyn Shape> {
+        Box::new(self.clone())
+    }
+
+    fn scale_dyn(&self, _: Vector, _: u32) -> Option<Box<dyn Shape>> {
+        None
+    }
+
+    fn mass_properties(&self, density: Real) -> MassProperties {
+        self.ball.mass_properties(density)
+    }
+
+    fn shape_type(&self) -> ShapeType {
+        ShapeType::Custom
+    }
+
+    fn as_typed_shape(&self) -> TypedShape<'_> {
+        self.shown.as_typed_shape()
+    }
+
+    fn ccd_thickness(&self) -> Real {
+        self.ball.radius
+    }
+
+    fn ccd_angular_thickness(&self) -> Real {
+        0.0
+    }
+
+    fn is_convex(&self) -> bool {
+        true
+    }
+
+    fn as_support_map(&self) -> Option<&dyn SupportMap> {
+        Some(self)
+    }
+
+    fn as_polygonal_feature_map(&self) -> Option<(&dyn PolygonalFeatureMap, Real)> {
+        Some((self, 0.0))
+    }
+}
+
+/// To rapier it may show itself as whatever it likes: what it is its own methods say.
+#[test]
+fn a_shape_is_not_taken_for_what_it_shows() {
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut dice = Dice::new(143);
+    let hull = dice.hull(30, 1.0).shape;
+    let shown = [
+        dice.hull(30, 4.0).shape,
+        SharedShape::round_cuboid(1.5, 1.5, 1.5, 0.5),
+        SharedShape::new(Cuboid::new(Vector::splat(2.0))),
+        SharedShape::ball(2.0),
+        SharedShape::cylinder(2.0, 2.0),
+    ];
+    for shown in shown {
+        let (ball, name) = (Ball::new(0.1), format!("{:?}", shown.shape_type()));
+        let shape = SharedShape::new(Shows { ball, shown });
+        let cuboid = SharedShape::cuboid(0.5, 0.5, 0.5);
+        for other in [&hull, &cuboid] {
+            for pose in [1.5, 0.9].map(|x| Pose::translation(x, 0.0, 0.0)) {
+                let ours = dispatcher.distance(&pose, &**other, &*shape);
+                let parrys = DefaultQueryDispatcher.distance(&pose, &**other, &*shape);
+                let [ours, parrys] = [ours, parrys].map(|d| d.expect("supported").distance);
+                assert_eq!(ours, parrys, "a ball that shows itself as {name}");
+            }
+        }
+    }
+}

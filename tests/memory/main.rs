@@ -1,0 +1,212 @@
+//! What is prepared of plain hulls takes no memory for long once they are gone, and what is in use is
+//! not prepared again and again.
+//!
+//! All tests count the same memory, so they take turns.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::collections::VecDeque;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+use std::sync::{Mutex, MutexGuard, PoisonError, mpsc};
+use std::thread;
+
+use isa_gjk::IsaGjkDispatcher;
+use parry3d::query::QueryDispatcher;
+use rapier3d::prelude::*;
+use testkit::generate::Dice;
+use testkit::memory::cold_manifold;
+
+struct Counting;
+
+static BYTES: AtomicUsize = AtomicUsize::new(0);
+static CALLS: AtomicUsize = AtomicUsize::new(0);
+
+// SAFETY: all is left to the system's allocator.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        BYTES.fetch_add(layout.size(), Relaxed);
+        CALLS.fetch_add(1, Relaxed);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        BYTES.fetch_sub(layout.size(), Relaxed);
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+const MIB: usize = 1 << 20;
+
+fn bytes() -> usize {
+    BYTES.load(Relaxed)
+}
+
+fn take_turn() -> MutexGuard<'static, ()> {
+    static TURN: Mutex<()> = Mutex::new(());
+    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A hull of points on a sphere.
+fn round(dice: &mut Dice, vertices: usize, radius: Real) -> SharedShape {
+    let points: Vec<Vector> = (0..vertices)
+        .map(|_| dice.direction().as_vec3() * radius)
+        .collect();
+    SharedShape::convex_hull(&points).expect("a hull")
+}
+
+fn touch(dispatcher: &IsaGjkDispatcher, shapes: [&SharedShape; 2]) {
+    let pose = Pose::translation(0.1, 0.2, 0.1);
+    let [a, b] = shapes;
+    let answer = dispatcher.intersection_test(&pose, &**a, &**b);
+    assert!(answer.is_ok_and(|answer| answer.intersecting));
+}
+
+/// Hulls that come, are asked about and go, among allocations of other sizes; the most memory that
+/// was in use meanwhile beyond what was in use before.
+fn churn(dispatcher: &IsaGjkDispatcher, dice: &mut Dice, hulls: usize, live: usize) -> usize {
+    let stays = round(dice, 100, 0.5);
+    let mut ring = VecDeque::new();
+    let (before, mut most) = (bytes(), 0);
+    for _ in 0..hulls {
+        let vertices = dice.count(50, 150);
+        let comes = round(dice, vertices, 0.5);
+        for _ in 0..3 {
+            touch(dispatcher, [&comes, &stays]);
+        }
+        ring.push_back((comes, vec![0_u8; dice.count(16, 2000)]));
+        if ring.len() > live {
+            ring.pop_front();
+        }
+        most = most.max(bytes().saturating_sub(before));
+    }
+    most
+}
+
+#[test]
+fn hulls_that_came_and_went_take_no_memory() {
+    let _turn = take_turn();
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut dice = Dice::new(131);
+    let before = bytes();
+    let most = churn(&dispatcher, &mut dice, 5_000, 30);
+    assert!(most < 48 * MIB, "{} MiB at most", most / MIB);
+    dispatcher.trim();
+    let stays = bytes().saturating_sub(before);
+    assert!(stays < MIB, "{stays} bytes stay");
+}
+
+/// A hull that comes, is in a world for a step, and goes.
+#[test]
+fn debris_of_a_world_takes_no_memory() {
+    let _turn = take_turn();
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut dice = Dice::new(132);
+    let mut world = PhysicsWorld {
+        narrow_phase: NarrowPhase::with_query_dispatcher(dispatcher),
+        ..PhysicsWorld::default()
+    };
+    world.insert_collider(ColliderBuilder::new(round(&mut dice, 60, 3.0)), None);
+    let (before, mut most) = (bytes(), 0);
+    for _ in 0..4_500 {
+        let shape = round(&mut dice, 100, 0.4);
+        let body = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 3.2, 0.0));
+        let (body, _) = world.insert(body, ColliderBuilder::new(shape));
+        world.step();
+        world.remove_body_with_colliders(body, true);
+        most = most.max(bytes().saturating_sub(before));
+    }
+    assert!(most < 48 * MIB, "{} MiB at most", most / MIB);
+}
+
+#[test]
+fn trimming_reaches_other_threads_and_changes_no_answer() {
+    let _turn = take_turn();
+    let dispatcher = IsaGjkDispatcher::default();
+    let (to_thread, orders) = mpsc::channel();
+    let (to_us, answers) = mpsc::channel();
+    let other = thread::spawn({
+        let dispatcher = dispatcher.clone();
+        move || {
+            let mut dice = Dice::new(133);
+            let shapes: Vec<_> = (0..200).map(|_| round(&mut dice, 100, 0.5)).collect();
+            for few in orders {
+                let shapes = if few { &shapes[..2] } else { &shapes };
+                let pose = Pose::translation(0.6, 0.5, 0.4);
+                let manifold = |pair: &[SharedShape]| {
+                    cold_manifold(&dispatcher, &pose, [&pair[0], &pair[1]], 0.1)
+                };
+                let manifolds = shapes.windows(2).map(manifold);
+                let text = format!("{:?}", manifolds.collect::<Vec<_>>());
+                to_us.send(text).expect("somebody waits");
+            }
+        }
+    });
+    let ask = |few: bool| {
+        to_thread.send(few).expect("somebody listens");
+        answers.recv().expect("an answer")
+    };
+    drop(ask(true));
+    let before = bytes();
+    let all = ask(false);
+    let kept = bytes() - before;
+    dispatcher.trim();
+    drop(ask(true));
+    let left = bytes().saturating_sub(before + all.len());
+    assert!(
+        kept > 2 * MIB && left < MIB / 2,
+        "{left} of {kept} bytes are left"
+    );
+    assert_eq!(all, ask(false));
+    drop(to_thread);
+    other.join().expect("no panic");
+}
+
+/// More than may stay unused, each asked about in turn.
+#[test]
+fn many_hulls_in_use_are_prepared_once() {
+    let _turn = take_turn();
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut dice = Dice::new(134);
+    let ball = SharedShape::ball(0.5);
+    let hulls: Vec<_> = (0..450).map(|_| round(&mut dice, 1000, 0.5)).collect();
+    let before = bytes();
+    let ask_all = || {
+        let calls = CALLS.load(Relaxed);
+        for hull in &hulls {
+            touch(&dispatcher, [hull, &ball]);
+        }
+        CALLS.load(Relaxed) - calls
+    };
+    let first = ask_all();
+    // What had to go before it was known that all are in use is prepared once more.
+    let second = ask_all();
+    assert!(second < first, "{second} after {first} allocations");
+    let later = [(); 5].map(|()| ask_all());
+    assert_eq!(later, [0; 5], "after {first} and {second}");
+    let kept = bytes() - before;
+    assert!(kept > 40 * MIB, "only {} MiB of hulls", kept / MIB);
+}
+
+/// A hull that was dropped, as others came, is answered as before when it comes back.
+#[test]
+fn what_was_dropped_is_answered_as_before() {
+    let _turn = take_turn();
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut dice = Dice::new(135);
+    let pairs: Vec<_> = (0..50)
+        .map(|_| [(); 2].map(|()| round(&mut dice, 40, 0.5)))
+        .collect();
+    let answers = || {
+        let pose = Pose::translation(0.6, 0.5, 0.4);
+        let answer =
+            |pair: &[SharedShape; 2]| cold_manifold(&dispatcher, &pose, pair.each_ref(), 0.1);
+        format!("{:?}", pairs.iter().map(answer).collect::<Vec<_>>())
+    };
+    let before = answers();
+    churn(&dispatcher, &mut dice, 5_000, 30);
+    let calls = CALLS.load(Relaxed);
+    assert_eq!(before, answers());
+    assert!(CALLS.load(Relaxed) - calls > 50 * 10, "nothing was dropped");
+}
