@@ -38,8 +38,8 @@ pub const CONVEXITY: f64 = 1e-6;
 pub const BOWL: f64 = 5e-5;
 
 /// Where a surface bends at an edge by less than this share of the radius, its two triangles may as well
-/// have the other diagonal: ten times what a dent may be deep.
-pub const FLAT_EDGE: f64 = 1e-5;
+/// have the other diagonal: twice what a dent may be deep.
+pub const FLAT_EDGE: f64 = 2e-6;
 
 /// A triangle lower than this share of the radius may face inwards by the rounding of its corners;
 /// a higher one that does is a fold of the surface. Ten f32 roundings.
@@ -53,7 +53,7 @@ pub const THINNEST: f64 = 1e-6;
 pub const THICK: f64 = 0.05;
 
 /// A point of a cloud may lie outside the hull that was built around it by this share of the radius. Two
-/// such hulls must leave the sum of all errors below the promise: see [`WORST_ERROR`].
+/// such hulls must leave the sum of all errors below the promise: see `WORST_ERROR`.
 pub const LEFT_OUT: f64 = 4e-6;
 
 /// Two support values closer than this share of `radius * |direction|` tie for hill climbing:
@@ -219,3 +219,7 @@ const _: () = assert!(
     WORST_ERROR <= PROMISED_ERROR,
     "the errors add up to more than the promise"
 );
+
+/// No pair is scaled up beyond this radius for parry's searches: the squares of longer coordinates are more
+/// than f32 holds.
+pub const LARGEST_SCALED: f64 = 1e15;

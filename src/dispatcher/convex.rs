@@ -13,6 +13,7 @@ use super::kept::{self, Present};
 use super::others::HalfSpace;
 use super::pair::{Pair, PairVisitor, Scratch};
 use super::points::write_points;
+use super::scaled::Scale;
 use crate::both::both;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch};
@@ -193,27 +194,28 @@ fn normals(near: &Proximity, pose: &RelativePose) -> [DVec3; 2] {
 impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
     /// To the routine for shapes with features, which searches with extreme vertices of the hull: ours
     /// climbs to them.
-    fn leave_to_parry<B>(&mut self, pair: &Pair<'_, B>, features: &dyn PolygonalFeatureMap) {
+    fn leave_to_parry<B: Support>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        features: &dyn PolygonalFeatureMap,
+    ) {
         let rotation = self.pos12.rotation;
         cache::turn_axis(self.manifold, pair.swapped, rotation);
-        let hull: &dyn PolygonalFeatureMap = pair.hull;
-        let [features_1, features_2] = cache::ordered([hull, features], pair.swapped);
-        let borders = pair.borders.map(|border| border as Real);
+        let scale = Scale::of(pair);
+        let shapes = [scale.shape(pair.hull), scale.shape(features)];
+        let [shape_1, shape_2] = cache::ordered(shapes, pair.swapped);
+        let borders = pair.borders.map(|border| scale.length(border as Real));
         let [border_1, border_2] = cache::ordered(borders, pair.swapped);
+        let (pos12, prediction) = (scale.pose(self.pos12), scale.length(self.prediction));
         let [c1, c2] = self.constraints;
         c1.with(|c1| {
             c2.with(|c2| {
-                contact_manifold_pfm_pfm(
-                    self.pos12,
-                    features_1,
-                    border_1,
-                    c1,
-                    features_2,
-                    border_2,
-                    c2,
-                    self.prediction,
-                    self.manifold,
-                );
+                scale.with_manifold(self.manifold, |manifold| {
+                    contact_manifold_pfm_pfm(
+                        &pos12, &shape_1, border_1, c1, &shape_2, border_2, c2, prediction,
+                        manifold,
+                    );
+                });
             });
         });
         cache::turn_axis(self.manifold, pair.swapped, rotation.inverse());

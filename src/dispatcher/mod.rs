@@ -18,6 +18,7 @@ mod pair;
 mod parts;
 mod points;
 mod preparation;
+mod scaled;
 mod scene;
 mod sub_pairs;
 mod unchanged;

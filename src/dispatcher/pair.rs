@@ -1,6 +1,5 @@
 //! From parry's shapes to polytopes that the kernels can work on.
 
-use std::any::{Any, TypeId};
 use std::cell::Cell;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -47,6 +46,7 @@ pub(super) fn trim() {
 impl Workbench {
     /// Works on that of this thread, which is out of its place meanwhile: whoever asks within a query (a
     /// user's `NormalConstraints`), or while the thread ends, works on a new one.
+    // perf: in a call the work would go through memory, which pairs that are apart notice.
     #[inline(always)]
     fn with<T>(work: impl FnOnce(&mut Self) -> T) -> T {
         let trims = TRIMS.load(Ordering::Relaxed);
@@ -193,15 +193,16 @@ impl<'a> AnyHull<'a> {
     /// By the type that it is: what a user's shape shows as its typed shape may be a likeness only.
     #[inline]
     fn of(shape: &'a dyn Shape) -> Option<Self> {
-        let shape_type = (shape as &dyn Any).type_id();
-        if shape_type == TypeId::of::<ConvexPolyhedron>() {
-            let hull = shape.as_shape()?;
-            Some(Self::Plain(hull, 0.0))
-        } else if shape_type == TypeId::of::<HullShape>() {
-            shape.as_shape().map(Self::Prepared)
-        } else {
-            let round: &RoundConvexPolyhedron = shape.as_shape()?;
-            Some(Self::Plain(&round.inner_shape, round.border_radius))
+        if let Some(hull) = shape.as_shape() {
+            return Some(Self::Plain(hull, 0.0));
+        }
+        match shape.shape_type() {
+            ShapeType::Custom => shape.as_shape().map(Self::Prepared),
+            ShapeType::RoundConvexPolyhedron => {
+                let round: &RoundConvexPolyhedron = shape.as_shape()?;
+                Some(Self::Plain(&round.inner_shape, round.border_radius))
+            }
+            _ => None,
         }
     }
 }

@@ -11,6 +11,7 @@ use super::cache::ordered;
 use super::half_space;
 use super::others::HalfSpace;
 use super::pair::{self, Pair, PairVisitor, Scratch};
+use super::scaled;
 use crate::gjk::{self, Closest, Outcome};
 use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Proximity, Query};
@@ -272,7 +273,7 @@ impl PairVisitor for ContactQuery<'_> {
     fn visit_curved<B: Support>(
         &mut self,
         pair: &Pair<'_, B>,
-        _: &dyn PolygonalFeatureMap,
+        features: &dyn PolygonalFeatureMap,
         _: &mut Scratch,
     ) -> Option<Self::Answer> {
         let query = SeparationQuery {
@@ -280,7 +281,7 @@ impl PairVisitor for ContactQuery<'_> {
             max_distance: self.prediction,
         };
         match query.separation(pair, GJK_CURVED_GAP)? {
-            Separation::None => None,
+            Separation::None => Some(scaled::contact(pair, features, self.pos12, self.prediction)),
             Separation::Near(near) => Some(Some(near.contact())),
             Separation::Beyond => Some(None),
         }

@@ -33,7 +33,7 @@ pub(crate) fn hull_and_diagonals(
     // All of them are vertices, but for those inside of flat sides: a hull builder would leave too
     // many, and take seconds.
     if points.len() > MAX_VERTICES {
-        return (Err(HullError::TooManyPoints), Diagonals::none(polyhedron));
+        return (Err(HullError::TooManyPoints), Diagonals(Box::default()));
     }
     let surface = Surface::of(polyhedron).and_then(|surface| {
         let hull = Hull::in_order(points.to_vec(), &surface.triangles).ok()?;
@@ -61,47 +61,40 @@ pub(crate) fn fingerprint(polyhedron: &ConvexPolyhedron) -> u64 {
     points.chain(edges).fold(0, mix)
 }
 
-/// The edges that a hull depends on besides its points.
+/// The edges that a hull depends on besides its points: which they are, and their ends.
 ///
 /// Those across which the surface bends are in any triangulation of the points. The others may have
 /// been the other diagonal of their two triangles.
 #[derive(Debug)]
-pub(crate) struct Diagonals {
-    /// Of all edges.
-    count: usize,
-    /// Which edge it is, and its ends.
-    edges: Box<[(u32, [u32; 2])]>,
-}
+pub(crate) struct Diagonals(Box<[(u32, [u32; 2])]>);
 
 impl Diagonals {
-    /// Edges that are looked up in their order.
     fn of(polyhedron: &ConvexPolyhedron, ids: impl Iterator<Item = u32>) -> Self {
-        let edges = polyhedron.edges();
-        Self {
-            count: edges.len(),
-            edges: ids.map(|id| (id, edges[id as usize].vertices)).collect(),
-        }
+        let ends = |id: u32| polyhedron.edges()[id as usize].vertices;
+        Self(ids.map(|id| (id, ends(id))).collect())
     }
 
     fn all(polyhedron: &ConvexPolyhedron) -> Self {
         Self::of(polyhedron, 0..polyhedron.edges().len() as u32)
     }
 
-    /// Where the points alone decide that there is no hull.
-    fn none(polyhedron: &ConvexPolyhedron) -> Self {
-        Self::of(polyhedron, 0..0)
-    }
-
     /// Whether a polyhedron with the same points has the same hull.
     #[inline]
     pub fn are_of(&self, polyhedron: &ConvexPolyhedron) -> bool {
+        self.0.is_empty() || self.are_among_edges_of(polyhedron)
+    }
+
+    #[inline(never)]
+    fn are_among_edges_of(&self, polyhedron: &ConvexPolyhedron) -> bool {
         let edges = polyhedron.edges();
-        let is_there = |&(id, ends): &(u32, [u32; 2])| edges[id as usize].vertices == ends;
-        edges.len() == self.count && self.edges.iter().all(is_there)
+        self.0.iter().all(|&(id, ends)| {
+            let edge = edges.get(id as usize);
+            edge.is_some_and(|edge| edge.vertices == ends)
+        })
     }
 
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.edges)
+        size_of_val(&*self.0)
     }
 }
 

@@ -248,3 +248,59 @@ fn casts_end_where_they_touch() {
     }
     assert!(hits > 500, "{hits} hits");
 }
+
+/// The same hull and curved shape, `scale` times as large; a power of two, so that nothing is rounded.
+fn scaled(hull: &Hull, curved: &Curved, scale: Real) -> [SharedShape; 2] {
+    let polyhedron = hull.shape.as_convex_polyhedron().expect("a hull").clone();
+    let polyhedron = polyhedron.scaled(Vector::splat(scale)).expect("a hull");
+    let curved = Curved {
+        half_height: curved.half_height * scale,
+        radius: curved.radius * scale,
+        border: curved.border * scale,
+        ..*curved
+    };
+    [SharedShape::new(polyhedron), curved.shape()]
+}
+
+/// Parry's searches stop at absolute lengths: contacts below a millimetre were lost.
+#[test]
+fn a_pair_of_any_size_is_answered_as_one_of_metres() {
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut dice = Dice::new(213);
+    let mut near = 0;
+    for curved in Curved::all() {
+        let hull = dice.hull(30, 1.0);
+        let poses = dice.passage(40, 0.5 * (curved.diameter() + hull.solid.diameter()));
+        let answers = |scale: Real| {
+            let [a, b] = scaled(&hull, &curved, scale);
+            let mut memory = Memory::default();
+            let answer = |pose: &ExactPose| {
+                let mut pose = pose.to_f32();
+                pose.translation *= scale;
+                let depth = least(memory.update(&dispatcher, &pose, [&a, &b], 0.02 * scale));
+                let contact = dispatcher.contact(&pose, &*a, &*b, 0.02 * scale);
+                let contact = contact
+                    .expect("supported")
+                    .map(|contact| contact.dist / scale);
+                let depth = if depth < Real::MAX {
+                    depth / scale
+                } else {
+                    depth
+                };
+                (depth, contact)
+            };
+            poses.iter().map(answer).collect::<Vec<_>>()
+        };
+        let metres = answers(1.0);
+        near += metres.iter().filter(|(depth, _)| *depth < 0.0).count();
+        // From a micrometre to a thousand kilometres.
+        for exponent in [-20, -13, -10, -7, -4, 4, 12, 20] {
+            let here = answers((exponent as Real).exp2());
+            assert_eq!(
+                here, metres,
+                "{curved:?} times two to the power of {exponent}"
+            );
+        }
+    }
+    assert!(near > 50, "{near} contacts");
+}

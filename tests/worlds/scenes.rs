@@ -120,7 +120,11 @@ fn settled(scene: Scene) -> Option<Settled> {
         // Four millimetres thick, and pressed into each other by a few.
         Scene::Plates | Scene::Needles => (2.0, 0.002),
         Scene::Breach => (0.1, 0.05),
-        // A quarter of what a body measures.
+        // A quarter of what a body measures. Small stones, a few centimetres thick, sink into each other by
+        // some millimetres, as soft contacts let them.
+        Scene::Dice | Scene::Rocks | Scene::Pebbles => {
+            (0.2, 0.25 * f64::from(scene.default_size().unwrap_or(1.0)))
+        }
         _ => (0.1, 0.25 * f64::from(scene.default_size().unwrap_or(1.0))),
     };
     Some(Settled { overlap, height })
