@@ -90,7 +90,7 @@ impl Cast<'_> {
             &cso,
             velocity,
             self.options.max_time_of_impact.into(),
-            pair.between_cores(self.target_distance()),
+            pair.between_cores(self.target_distance(), cso.size()),
             &mut Cost::default(),
         );
         match impact {
@@ -109,7 +109,8 @@ impl Cast<'_> {
         self.options.target_distance.max(0.0)
     }
 
-    /// Shapes that are within the target distance from the beginning.
+    /// Shapes that touch, or are within the target distance, from the beginning: they meet at time 0 if they
+    /// approach, or if the cast is to stop there in any case. What departs, or slides along, meets nothing.
     fn overlap<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,

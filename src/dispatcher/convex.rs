@@ -48,7 +48,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         }
         let pose = pair.pose(self.pos12);
         let cso = pair.cso(&pose);
-        let max_distance = pair.between_cores(self.prediction);
+        let max_distance = pair.between_cores(self.prediction, cso.size());
         let frame = AxisFrame::of(&cso);
         let mut cost = Cost::default();
         // Half of the pairs that are apart, or more, end here: before anything else is done for them.
@@ -64,8 +64,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             scratch: &mut scratch.epa,
             cost: &mut cost,
         };
-        // Stage by stage: what most queries find is used where it is found. An answer that is moved is
-        // waited for until it is written.
+        // Stage by stage: copying an answer stalls on store forwarding.
         let answer = match cache::read(self.manifold, pair.swapped, frame) {
             Memory::None => query.begin(),
             Memory::Axis(axis, ids) => match query.test_axis(axis, ids) {
@@ -113,7 +112,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             return None;
         }
         let pose = pair.pose(self.pos12);
-        let max_distance = pair.between_cores(self.prediction);
+        let max_distance = pair.between_cores(self.prediction, pair.hull.radius());
         let mut cost = Cost::default();
         if half_space::has_ball_apart(pair, &pose, max_distance) {
             self.stats.record(Stage::Balls, &cost);
@@ -159,10 +158,11 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         }
         if self.manifold.points.is_empty() {
             let pose = pair.pose(self.pos12);
+            let cso = pair.cso(&pose);
             let mut cost = Cost::default();
             let apart = Query {
-                cso: &pair.cso(&pose),
-                max_distance: pair.between_cores(self.prediction),
+                cso: &cso,
+                max_distance: pair.between_cores(self.prediction, cso.size()),
                 shells: None,
                 scratch: &mut scratch.epa,
                 cost: &mut cost,
@@ -221,8 +221,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         cache::turn_axis(self.manifold, pair.swapped, rotation.inverse());
     }
 
-    /// Leaves the contacts where they are, if that is right. Corrected normals are not the query's, so its
-    /// depth says nothing about their contacts.
+    /// Leaves the contacts where they are, if that is right. The depth along corrected normals is another.
     #[inline(always)]
     fn keep_contacts<B>(
         &mut self,

@@ -19,6 +19,7 @@ use crate::manifold::ClipScratch;
 use crate::pose::RelativePose;
 use crate::primitive::Ball;
 use crate::support::{Cso, Polytope, Support};
+use crate::tolerance::TOUCHING;
 
 /// What a thread keeps from query to query: prepared hulls, and memory to work in.
 #[derive(Default)]
@@ -133,10 +134,17 @@ impl<'a, B> Pair<'a, B> {
         }
     }
 
-    /// How far apart they are without borders, if with them it is as far as this.
+    /// Up to this distance they touch. `size` is that of both without borders.
     #[inline(always)]
-    pub fn between_cores(&self, distance: Real) -> f64 {
-        f64::from(distance) + self.borders[0] + self.borders[1]
+    pub fn touching(&self, size: f64) -> f64 {
+        TOUCHING * (size + self.borders[0] + self.borders[1])
+    }
+
+    /// How far apart they are without borders, if with them they are as far apart as this, or touch at
+    /// that distance. `size` is that of both without borders.
+    #[inline(always)]
+    pub fn between_cores(&self, distance: Real, size: f64) -> f64 {
+        f64::from(distance) + self.borders[0] + self.borders[1] + self.touching(size)
     }
 }
 

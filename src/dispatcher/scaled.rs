@@ -59,19 +59,18 @@ impl Scale {
     }
 }
 
-/// The contact of a hull and an overlapping shape, by parry's search.
+/// The contact of a hull and a shape that touch or overlap, by parry's search, however far apart they are
+/// to it. `None` where it fails.
 pub(super) fn contact<B: Support>(
     pair: &Pair<'_, B>,
     other: &dyn PolygonalFeatureMap,
     pos12: &Pose,
-    prediction: Real,
 ) -> Option<Contact> {
     let scale = Scale::of(pair);
     let shapes = [scale.shape(pair.hull), scale.shape(other)];
     let [shape_1, shape_2] = ordered(shapes, pair.swapped);
-    let prediction = scale.length(pair.between_cores(prediction) as Real);
     let mut contact =
-        contact_support_map_support_map(&scale.pose(pos12), &shape_1, &shape_2, prediction)?;
+        contact_support_map_support_map(&scale.pose(pos12), &shape_1, &shape_2, Real::MAX)?;
     let borders = pair.borders.map(|border| border as Real);
     let [border_1, border_2] = ordered(borders, pair.swapped);
     contact.point1 = contact.point1 / scale.0 + contact.normal1 * border_1;

@@ -1,6 +1,7 @@
 //! Queries without memory: distance, contact, closest points and intersection of hulls.
 //!
-//! Only `contact` asks how deep shapes overlap; the others end with GJK.
+//! Only `contact` asks how deep shapes overlap; the others end with GJK. Shapes that are apart by no more
+//! than [`TOUCHING`](crate::tolerance::TOUCHING) touch, for all of them.
 
 use glam::DVec3;
 use parry3d::math::{Pose, Real};
@@ -12,7 +13,8 @@ use super::half_space;
 use super::others::HalfSpace;
 use super::pair::{self, Pair, PairVisitor, Scratch};
 use super::scaled;
-use crate::gjk::{self, Closest, Outcome};
+use crate::epa;
+use crate::gjk::{self, Outcome};
 use crate::pose::RelativePose;
 use crate::query::{Answer, Memory, Proximity, Query};
 use crate::simplex::Preferred;
@@ -72,10 +74,6 @@ pub(super) struct Near {
 }
 
 impl Near {
-    fn of_closest(near: &Closest, seen: &Seen<'_>) -> Self {
-        seen.near(near.normal, [near.on_1, near.on_2], near.distance)
-    }
-
     pub fn of_proximity(near: &Proximity, seen: &Seen<'_>) -> Self {
         seen.near(near.normal, [near.on_1, near.on_2], near.signed_distance)
     }
@@ -128,8 +126,9 @@ enum Separation {
 }
 
 impl Separation {
-    fn of(near: Near) -> Self {
-        if near.signed_distance <= 0.0 {
+    /// Up to the distance `touching` the shapes touch.
+    fn of(near: Near, touching: f64) -> Self {
+        if near.signed_distance <= touching {
             Self::None
         } else {
             Self::Near(near)
@@ -161,7 +160,9 @@ impl SeparationQuery<'_> {
         let pose = valid_pose(pair, self.pos12)?;
         let cso = pair.cso(&pose);
         let cost = &mut Cost::default();
-        let max_distance = pair.between_cores(self.max_distance);
+        let size = cso.size();
+        // Within its gap GJK does not know: there, too, they touch, for all queries.
+        let max_distance = pair.between_cores(self.max_distance, size) + gap * size;
         if cso.has_balls_apart(max_distance) {
             return Some(Separation::Beyond);
         }
@@ -175,9 +176,11 @@ impl SeparationQuery<'_> {
         Some(match outcome {
             Outcome::Apart(_) => Separation::Beyond,
             Outcome::Overlap(_) => Separation::None,
+            Outcome::Near(closest) if closest.distance > max_distance => Separation::Beyond,
             Outcome::Near(closest) => {
-                let seen = Seen::new(pair, &pose);
-                Separation::of(Near::of_closest(&closest, &seen))
+                let points = [closest.on_1, closest.on_2];
+                let near = Seen::new(pair, &pose).near(closest.normal, points, closest.distance);
+                Separation::of(near, pair.touching(size) + gap * size)
             }
         })
     }
@@ -209,7 +212,11 @@ impl PairVisitor for SeparationQuery<'_> {
         _: &mut Scratch,
     ) -> Option<Self::Answer> {
         let near = over_half_space(pair, self.pos12, self.max_distance)?;
-        Some(near.map_or(Separation::Beyond, Separation::of))
+        let touching = pair.touching(pair.hull.radius());
+        Some(match near {
+            Some(near) => Separation::of(near, touching),
+            None => Separation::Beyond,
+        })
     }
 }
 
@@ -224,7 +231,7 @@ fn over_half_space(
     max_distance: Real,
 ) -> Option<Option<Near>> {
     let pose = valid_pose(pair, pos12)?;
-    let max_distance = pair.between_cores(max_distance);
+    let max_distance = pair.between_cores(max_distance, pair.hull.radius());
     if half_space::has_ball_apart(pair, &pose, max_distance) {
         return Some(None);
     }
@@ -236,6 +243,18 @@ fn over_half_space(
 struct ContactQuery<'a> {
     pos12: &'a Pose,
     prediction: Real,
+}
+
+impl ContactQuery<'_> {
+    /// The contact of shapes that touch or overlap, by EPA.
+    fn depth<B: Support>(&self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Contact> {
+        let pose = valid_pose(pair, self.pos12)?;
+        let cost = &mut Cost::default();
+        let found = epa::penetration(&pair.cso(&pose), &[], &mut scratch.epa, cost)?;
+        let points = [found.on_1, found.on_2];
+        let near = Seen::new(pair, &pose).near(found.normal, points, -found.depth);
+        Some(near.contact())
+    }
 }
 
 impl PairVisitor for ContactQuery<'_> {
@@ -254,7 +273,7 @@ impl PairVisitor for ContactQuery<'_> {
         let cso = pair.cso(&pose);
         let (answer, _) = Query {
             cso: &cso,
-            max_distance: pair.between_cores(self.prediction),
+            max_distance: pair.between_cores(self.prediction, cso.size()),
             shells: None,
             scratch: &mut scratch.epa,
             cost: &mut Cost::default(),
@@ -269,19 +288,22 @@ impl PairVisitor for ContactQuery<'_> {
         })
     }
 
-    /// How deep they overlap is parry's to say.
+    /// How deep they overlap is parry's to say. Where they only touch it may not know.
     fn visit_curved<B: Support>(
         &mut self,
         pair: &Pair<'_, B>,
         features: &dyn PolygonalFeatureMap,
-        _: &mut Scratch,
+        scratch: &mut Scratch,
     ) -> Option<Self::Answer> {
         let query = SeparationQuery {
             pos12: self.pos12,
             max_distance: self.prediction,
         };
         match query.separation(pair, GJK_CURVED_GAP)? {
-            Separation::None => Some(scaled::contact(pair, features, self.pos12, self.prediction)),
+            Separation::None => {
+                let contact = scaled::contact(pair, features, self.pos12);
+                Some(contact.or_else(|| self.depth(pair, scratch)))
+            }
             Separation::Near(near) => Some(Some(near.contact())),
             Separation::Beyond => Some(None),
         }
