@@ -1,19 +1,22 @@
 //! Records a scene of `compare` to one HTML file that plays in a browser:
-//! `cargo run --release -p replay -- --scene stack --out replay.html`.
+//! `cargo run --release -p replay -- --scene stack --out replay.html`. With `--film` it writes
+//! both narrow phases side by side, as one animated picture.
 
+mod film;
 mod mesh;
 mod tape;
 
 use std::error::Error;
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, ValueEnum, value_parser};
 use isa_gjk::IsaGjkDispatcher;
 use serde_json::json;
 
+use film::Reel;
 use tape::Tape;
-use testkit::scenes::{self, HullSource, Hulls, Scene, SceneParams};
+use testkit::scenes::{self, HullSource, Hulls, Scene, SceneParams, World};
 
 /// The page, with gaps for the header and the tape.
 const PLAYER: &str = include_str!("player.html");
@@ -59,6 +62,15 @@ struct Options {
     /// Where to write the page
     #[arg(long, default_value = "replay.html")]
     out: PathBuf,
+
+    /// Write the scene with rapier's narrow phase and with this crate's, side by side, to this
+    /// animated SVG picture instead
+    #[arg(long, conflicts_with_all = ["dispatcher", "out"])]
+    film: Option<PathBuf>,
+
+    /// Metres from the left to the right of the picture
+    #[arg(long, default_value_t = 8.0, requires = "film")]
+    extent: f32,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -89,6 +101,19 @@ impl Options {
         }
     }
 
+    /// Steps the world, and hands it over at first and after each `every` steps. Returns the seconds
+    /// in between.
+    fn run(&self, world: &mut World, mut record: impl FnMut(&World)) -> f64 {
+        let step = f64::from(world.physics.integration_parameters.dt);
+        let seconds_per_frame = step * f64::from(self.every);
+        record(world);
+        for _ in 0..(self.seconds / seconds_per_frame) as usize {
+            (0..self.every).for_each(|_| world.step());
+            record(world);
+        }
+        seconds_per_frame
+    }
+
     fn title(&self, params: &SceneParams) -> String {
         let what = match self.scene.hulls() {
             Hulls::None => String::new(),
@@ -106,22 +131,23 @@ impl Options {
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
     let params = options.params();
+    match &options.film {
+        Some(out) => write_film(&options, &params, out),
+        None => write_page(&options, &params),
+    }
+}
+
+fn write_page(options: &Options, params: &SceneParams) -> Result<(), Box<dyn Error>> {
     let dispatcher = match options.dispatcher {
         Dispatcher::Ours => Some(IsaGjkDispatcher::default()),
         Dispatcher::Default => None,
     };
-    let mut world = scenes::build(options.scene, &params, dispatcher)?;
-    let step = f64::from(world.physics.integration_parameters.dt);
-    let seconds_per_frame = step * f64::from(options.every);
+    let mut world = scenes::build(options.scene, params, dispatcher)?;
     let mut tape = Tape::new(&world);
-    tape.record(&world);
-    for _ in 0..(options.seconds / seconds_per_frame) as usize {
-        (0..options.every).for_each(|_| world.step());
-        tape.record(&world);
-    }
+    let seconds_per_frame = options.run(&mut world, |world| tape.record(world));
 
     let header = json!({
-        "title": options.title(&params),
+        "title": options.title(params),
         "framesPerSecond": seconds_per_frame.recip(),
         "tape": tape.header(),
     });
@@ -131,13 +157,28 @@ fn main() -> Result<(), Box<dyn Error>> {
         PLAYER
             .replacen(HEADER, &header, 1)
             .replacen(TAPE, &format!("\"{}\"", tape.encode()?), 1);
-    fs::write(&options.out, &page)
-        .map_err(|error| format!("cannot write {}: {error}", options.out.display()))?;
-    println!(
-        "{} frames, {:.1} MB, in {}",
-        tape.len(),
-        page.len() as f64 / 1e6,
-        options.out.display()
-    );
+    write(&options.out, &page)?;
+    println!("{} frames", tape.len());
+    Ok(())
+}
+
+fn write_film(options: &Options, params: &SceneParams, out: &Path) -> Result<(), Box<dyn Error>> {
+    let both = [
+        ("rapier's default", None),
+        ("isa-gjk", Some(IsaGjkDispatcher::default())),
+    ];
+    let mut reels = Vec::new();
+    for (title, dispatcher) in both {
+        let mut world = scenes::build(options.scene, params, dispatcher)?;
+        let mut reel = Reel::new(title, options.extent);
+        options.run(&mut world, |world| reel.record(world));
+        reels.push(reel);
+    }
+    write(out, &film::picture(&reels, options.seconds))
+}
+
+fn write(out: &Path, text: &str) -> Result<(), Box<dyn Error>> {
+    fs::write(out, text).map_err(|error| format!("cannot write {}: {error}", out.display()))?;
+    println!("{:.2} MB in {}", text.len() as f64 / 1e6, out.display());
     Ok(())
 }
