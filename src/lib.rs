@@ -101,6 +101,7 @@
 //! # Ok::<(), isa_gjk::HullError>(())
 //! ```
 #![deny(unsafe_code)]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[cfg(feature = "bevy")]
 pub mod bevy;
@@ -125,12 +126,12 @@ mod tuning;
 
 pub use dispatcher::IsaGjkDispatcher;
 pub use hull::{Hull, HullError};
-pub use hull_shape::HullShape;
+pub use hull_shape::{HullShape, PreparedShapes};
 pub use stats::{Stage, Stats};
 
 /// All that a user of a physics world needs.
 pub mod prelude {
-    pub use crate::{Hull, HullError, HullShape, IsaGjkDispatcher, Stage, Stats};
+    pub use crate::{Hull, HullError, HullShape, IsaGjkDispatcher, PreparedShapes, Stage, Stats};
 }
 
 #[cfg(doctest)]
@@ -140,3 +141,7 @@ struct Readme;
 #[cfg(doctest)]
 #[doc = include_str!("../docs/tips.md")]
 struct Tips;
+
+#[cfg(doctest)]
+#[doc = include_str!("../docs/bevy.md")]
+struct BevyPage;
