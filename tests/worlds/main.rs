@@ -5,6 +5,7 @@ mod determinism;
 mod fast_hull;
 mod hull_shape_world;
 mod inner_edges;
+mod large_grounds;
 mod mid_run;
 mod prepared_shapes;
 mod resting;
