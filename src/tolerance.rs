@@ -41,6 +41,14 @@ pub const BOWL: f64 = 5e-5;
 /// have the other diagonal: twice what a dent may be deep.
 pub const FLAT_EDGE: f64 = 2e-6;
 
+/// The corners of a flat side are within this share of the radius of one plane: then each of its
+/// diagonals is a [`FLAT_EDGE`].
+pub const FLAT_SIDE: f64 = FLAT_EDGE / 8.0;
+
+/// Where two flat sides meet, any two triangles of them bend by more than this share of the radius: then
+/// the edge between them is no [`FLAT_EDGE`].
+pub const BENT_EDGE: f64 = 2.0 * FLAT_EDGE;
+
 /// A triangle lower than this share of the radius may face inwards by the rounding of its corners;
 /// a higher one that does is a fold of the surface. Ten f32 roundings.
 pub const FOLD: f64 = 6e-7;
@@ -86,6 +94,10 @@ pub const TOUCHING: f64 = 1e-10;
 /// A penetration depth is certified when upper and lower bound differ by less than this share
 /// of the smaller shape's radius: a tenth of the promised accuracy.
 pub const DEPTH_GAP: f64 = 1e-6;
+
+/// How much f32 may be off about how far a point is inside of a face, as a share of how far it and the
+/// corners are from each other and from the origin: a dozen roundings.
+pub const INSET_ROUNDING: f64 = 1e-6;
 
 /// How far (relative to the smaller radius) shapes are moved apart to find the witness points of their
 /// depth. Wide enough for GJK to see a direction; so narrow that the normal's error, an angle that costs

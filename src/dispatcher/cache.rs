@@ -80,8 +80,7 @@ pub(super) fn read<M, C>(
     let Some(axis) = unit(stored) else {
         return Memory::None;
     };
-    let deepest = |a: &&TrackedContact<C>, b: &&TrackedContact<C>| a.dist.total_cmp(&b.dist);
-    match manifold.points.iter().min_by(deepest) {
+    match deepest(&manifold.points) {
         None => {
             let n2 = manifold.local_n2;
             // Casts saturate, and NaN becomes 0: any vector is some pair of vertices.
@@ -92,6 +91,17 @@ pub(super) fn read<M, C>(
             _ => Memory::Axis(axis, [0, 0]),
         },
     }
+}
+
+#[inline]
+fn deepest<C>(contacts: &[TrackedContact<C>]) -> Option<&TrackedContact<C>> {
+    let (mut deepest, others) = contacts.split_first()?;
+    for other in others {
+        if other.dist < deepest.dist {
+            deepest = other;
+        }
+    }
+    Some(deepest)
 }
 
 /// Leaves nothing to a pair that is known to be apart without it: where to begin next is not worth

@@ -45,17 +45,19 @@ pub(super) fn keep_contacts<M, C>(
     if !(1..=MAX_POINTS).contains(&manifold.points.len()) || !present.has_normals(normals) {
         return false;
     }
-    let [distances, drifts] = present.measure(&manifold.points);
+    let [distances, drifts_squared] = present.measure(&manifold.points);
     let limit = KEPT_DRIFT * present.radius;
+    // A drift that is not a number is too far.
+    if !drifts_squared
+        .iter()
+        .all(|&squared| squared <= limit * limit)
+    {
+        return false;
+    }
     let mut deepest = 0;
-    for i in 0..manifold.points.len() {
-        // A drift that is not a number is too far.
-        let is_near = drifts[i] <= limit * limit;
-        if !is_near {
-            return false;
-        }
-        if distances[i] < distances[deepest] {
-            deepest = i;
+    for lane in 1..MAX_POINTS {
+        if distances[lane] < distances[deepest] {
+            deepest = lane;
         }
     }
     let excess = distances[deepest] - present.signed_distance;
@@ -90,8 +92,11 @@ impl Present<'_> {
         let points = |of: fn(&TrackedContact<C>) -> Vec3| {
             Vectors::of(lanes, |contact| of(contact).as_dvec3())
         };
-        let points = [points(|c| c.local_p1), points(|c| c.local_p2)];
-        let [on_1, on_2] = cache::ordered(points, self.swapped);
+        let (on_1, on_2) = if self.swapped {
+            (points(|c| c.local_p2), points(|c| c.local_p1))
+        } else {
+            (points(|c| c.local_p1), points(|c| c.local_p2))
+        };
         let between = self.pose.points_to_1(on_2) - on_1;
         let distance = between.dot(self.normals[0]);
         let drift_squared = between.length_squared() - distance * distance;

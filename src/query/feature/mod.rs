@@ -31,7 +31,7 @@ use crate::pose::RelativePose;
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
 use crate::tolerance::PARALLEL_EDGES;
-use polygon::{crossing, pyramid_holds_ball, side_beyond};
+use polygon::{cone_holds_ball, crossing, inset, pyramid_holds_ball, side_beyond};
 
 /// A part of a polytope's boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -171,7 +171,6 @@ impl Test {
                 ids: [p.face_vertex(face, 0), q_id],
             });
         }
-        let corners = p.corners(face).map(|corner| corner - on_q);
         let certified = Proximity {
             signed_distance,
             normal,
@@ -179,12 +178,17 @@ impl Test {
             on_2: on_q,
             features: [Feature::Face(face), Feature::Vertex(q_id)],
         };
+        let apex = p.center() - q_pose.point_to_1(q.center());
+        let depth = -signed_distance - self.tolerance;
+        let inset = inset(p, face, normal, on_q, signed_distance);
+        if inset > 0.0 && (depth <= 0.0 || cone_holds_ball(inset, depth, apex, normal)) {
+            return Verdict::Certified(certified);
+        }
+        let corners = p.corners(face).map(|corner| corner - on_q);
         if let Some(side) = side_beyond(corners.clone(), normal, self.tolerance) {
             let ends = both(side.ends, |i| [p.face_vertex(face, i), q_id]);
             return Verdict::Beyond(Side::new(ends, side.along, normal));
         }
-        let apex = p.center() - q_pose.point_to_1(q.center());
-        let depth = -signed_distance - self.tolerance;
         if signed_distance >= 0.0 || pyramid_holds_ball(corners, apex, depth) {
             return Verdict::Certified(certified);
         }
@@ -222,7 +226,9 @@ impl Test {
         // Before a vertex is searched for: whether or not the two edges still span a facet, it is left.
         let vertices = parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], outward > 0.0);
         let corners = vertices.iter().map(|vertex| vertex.w);
-        if let Some(side) = side_beyond(corners.clone(), normal, self.tolerance) {
+        let [s, t] = crossing(offset, along_1, along_2);
+        let is_inside = (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t);
+        if !is_inside && let Some(side) = side_beyond(corners.clone(), normal, self.tolerance) {
             let ends = both(side.ends, |i| vertices[i].ids);
             return Verdict::Beyond(Side::new(ends, side.along, normal));
         }
@@ -238,7 +244,6 @@ impl Test {
         if -normal.dot(offset) - signed_distance > self.tolerance {
             return Verdict::Cut(extreme, normal);
         }
-        let [s, _] = crossing(offset, along_1, along_2);
         let on_1 = a0 + along_1 * s;
         let proximity = Proximity {
             signed_distance,
@@ -248,7 +253,16 @@ impl Test {
             features,
         };
         let depth = -signed_distance - self.tolerance;
-        if signed_distance >= 0.0 || pyramid_holds_ball(corners, center, depth) {
+        // The sides of the parallelogram are along the edges.
+        let length = along_1
+            .length_squared()
+            .max(along_2.length_squared())
+            .sqrt();
+        let inset = s.min(1.0 - s).min(t).min(1.0 - t) * area_squared.sqrt() / length;
+        if signed_distance >= 0.0
+            || cone_holds_ball(inset, depth, center, normal)
+            || pyramid_holds_ball(corners, center, depth)
+        {
             return Verdict::Certified(proximity);
         }
         Verdict::Unproved(proximity)

@@ -2,9 +2,74 @@
 //! how deep it is in the pyramid beneath.
 
 use glam::DVec3;
+use wide::f32x4;
 
 use crate::both::both;
-use crate::support::Corners;
+use crate::support::{Corners, FaceId, Polytope};
+use crate::tolerance::INSET_ROUNDING;
+
+/// How far the projection of a point into a face's plane is at least inside of the face; not above zero
+/// where it may be outside. Four sides at a time, in f32: rounding is taken off. The point is no farther
+/// from the plane than `distance`.
+#[inline]
+pub(super) fn inset(
+    shape: &impl Polytope,
+    face: FaceId,
+    normal: DVec3,
+    point: DVec3,
+    distance: f64,
+) -> f64 {
+    let count = shape.face_len(face);
+    let (normal, at) = (normal.as_vec3(), point.as_vec3());
+    let mut least = f32x4::splat(f32::INFINITY);
+    let mut is_inside = f32x4::ZERO.simd_eq(f32x4::ZERO);
+    for first in (0..count).step_by(4) {
+        // Beyond the last corner come the first ones again.
+        let number = |i: usize| {
+            if first + i < count {
+                first + i
+            } else {
+                first + i - count
+            }
+        };
+        let [a, b, c, d] = shape.four_corners(face, [0, 1, 2, 3].map(number));
+        let next = shape.vertex(shape.face_vertex(face, number(4))).as_vec3();
+        let row = |axis: usize| {
+            let from = f32x4::new([a[axis], b[axis], c[axis], d[axis]]);
+            let to = f32x4::new([b[axis], c[axis], d[axis], next[axis]]);
+            (from - at[axis], to - from)
+        };
+        let [(from_x, x), (from_y, y), (from_z, z)] = [row(0), row(1), row(2)];
+        let inward_x = z * normal.y - y * normal.z;
+        let inward_y = x * normal.z - z * normal.x;
+        let inward_z = y * normal.x - x * normal.y;
+        let squared = inward_x * inward_x + inward_y * inward_y + inward_z * inward_z;
+        let height = -(inward_x * from_x + inward_y * from_y + inward_z * from_z) / squared.sqrt();
+        // Of a side without length the height is no number.
+        is_inside &= height.simd_gt(f32x4::ZERO);
+        least = least.fast_min(height);
+    }
+    if !is_inside.all() {
+        return 0.0;
+    }
+    let [a, b, c, d] = least.to_array().map(f64::from);
+    let size = 2.0 * shape.radius() + distance.abs() + point.length();
+    a.min(b).min(c.min(d)) - INSET_ROUNDING * size
+}
+
+/// Whether the ball of radius `depth` around the origin is in the hull of an apex and a disc around the
+/// point that is `depth` along the normal: the part of a face that is `inset`.
+///
+/// The disc alone reaches that far in all directions but those against the normal up to an angle, of which
+/// half has the tangent `depth / inset`; and there the apex does, if it does at that angle.
+#[inline]
+pub(super) fn cone_holds_ball(inset: f64, depth: f64, apex: DVec3, normal: DVec3) -> bool {
+    let beneath = -apex.dot(normal);
+    let aside = (apex + normal * beneath).length();
+    let [inset_squared, depth_squared] = [inset * inset, depth * depth];
+    let at_angle = beneath * (inset_squared - depth_squared) - 2.0 * aside * inset * depth;
+    inset > 0.0 && beneath > 0.0 && at_angle >= depth * (inset_squared + depth_squared)
+}
 
 /// A side of a polygon.
 pub(super) struct PolygonSide {
