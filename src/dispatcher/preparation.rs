@@ -196,12 +196,40 @@ mod tests {
         assert!(higher.is_of(&pyramid(1.5, false)));
     }
 
-    /// The names of features depend on the edges.
+    /// The diagonals of a flat side are our own, so any others make the same hull.
+    #[test]
+    fn the_diagonals_of_flat_sides_do_not_matter() {
+        let [one, other] = [false, true].map(|diagonal| Preparation::of(&pyramid(1.0, diagonal)));
+        assert!(one.is_of(&pyramid(1.0, false)) && one.is_of(&pyramid(1.0, true)));
+        let [one, other] = [one, other].map(|prepared| format!("{:?}", prepared.hull()));
+        assert_eq!(one, other);
+    }
+
+    /// With a vertex inside of a flat side the names of features depend on the edges.
     #[test]
     fn other_edges_are_another_polyhedron() {
-        let [one, other] = [false, true].map(|diagonal| Preparation::of(&pyramid(1.0, diagonal)));
-        assert!(one.is_of(&pyramid(1.0, false)) && !one.is_of(&pyramid(1.0, true)));
-        assert!(other.is_of(&pyramid(1.0, true)) && !other.is_of(&pyramid(1.0, false)));
+        let [one, other] = [false, true].map(|cut| Preparation::of(&six_sided(cut)));
+        assert!(one.hull().is_some() && other.hull().is_some());
+        assert!(one.is_of(&six_sided(false)) && !one.is_of(&six_sided(true)));
+        assert!(other.is_of(&six_sided(true)) && !other.is_of(&six_sided(false)));
+    }
+
+    /// A pyramid with a vertex inside of its base, to which all corners have an edge, or all but one.
+    fn six_sided(cut: bool) -> ConvexPolyhedron {
+        let corner = |i: u32| {
+            let (sin, cos) = (i as f32 * std::f32::consts::FRAC_PI_3).sin_cos();
+            Vec3::new(cos, 0.0, sin)
+        };
+        let mut points: Vec<Vec3> = (0..6).map(corner).collect();
+        points.extend([Vec3::ZERO, Vec3::Y]);
+        let mut triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, 7, (i + 1) % 6]).collect();
+        if cut {
+            triangles.extend([[0, 1, 2], [0, 2, 6]]);
+            triangles.extend((2..6).map(|i| [i, (i + 1) % 6, 6]));
+        } else {
+            triangles.extend((0..6).map(|i| [i, (i + 1) % 6, 6]));
+        }
+        ConvexPolyhedron::from_convex_mesh(points, &triangles).expect("parry takes it")
     }
 
     #[test]

@@ -7,6 +7,7 @@ mod climb;
 mod cloud;
 mod error;
 mod faces;
+mod flat_sides;
 mod graph;
 mod order;
 mod scan;

@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3, Vec3};
 use parry3d::shape::ConvexPolyhedron;
 
 use super::build::MAX_VERTICES;
-use super::{Hull, HullError};
+use super::{Hull, HullError, flat_sides};
 use crate::tolerance::FLAT_EDGE;
 
 /// The hull of a polyhedron; that of its points where its surface is not a convex triangulation of
@@ -35,13 +35,18 @@ pub(crate) fn hull_and_diagonals(
     if points.len() > MAX_VERTICES {
         return (Err(HullError::TooManyPoints), Diagonals(Box::default()));
     }
-    let surface = Surface::of(polyhedron).and_then(|surface| {
-        let hull = Hull::in_order(points.to_vec(), &surface.triangles).ok()?;
-        Some((hull, surface.flat_edges))
-    });
-    match surface {
-        Some((hull, flat)) => (Ok(hull), Diagonals::of(polyhedron, flat.into_iter())),
-        None => (Hull::from_points(points), Diagonals::all(polyhedron)),
+    let Some(surface) = Surface::of(polyhedron) else {
+        return (Hull::from_points(points), Diagonals::all(polyhedron));
+    };
+    if let Some(hull) = surface.with_own_diagonals(points) {
+        return (Ok(hull), Diagonals(Box::default()));
+    }
+    match Hull::in_order(points.to_vec(), &surface.triangles) {
+        Ok(hull) => (
+            Ok(hull),
+            Diagonals::of(polyhedron, surface.flat_edges.into_iter()),
+        ),
+        Err(_) => (Hull::from_points(points), Diagonals::all(polyhedron)),
     }
 }
 
@@ -120,6 +125,8 @@ struct Surface {
     triangles: Vec<[u32; 3]>,
     /// The edges across which it hardly bends.
     flat_edges: Vec<u32>,
+    /// Around a point inside.
+    radius: f64,
 }
 
 impl Surface {
@@ -130,7 +137,8 @@ impl Surface {
         }
         let inside = points.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / points.len() as f64;
         let squares = points.iter().map(|p| p.as_dvec3().distance_squared(inside));
-        let flatness = FLAT_EDGE * squares.fold(0.0, f64::max).sqrt();
+        let radius = squares.fold(0.0, f64::max).sqrt();
+        let flatness = FLAT_EDGE * radius;
         let (first, rows) = edge_rows(points.len(), polyhedron);
         let mut triangles = Vec::with_capacity(2 * points.len());
         let mut flat_edges = Vec::new();
@@ -175,7 +183,18 @@ impl Surface {
         Some(Self {
             triangles,
             flat_edges,
+            radius,
         })
+    }
+
+    /// The hull over diagonals that depend on the points only, where all flat edges are such.
+    fn with_own_diagonals(&self, points: &[Vec3]) -> Option<Hull> {
+        if self.flat_edges.is_empty() {
+            return None;
+        }
+        let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
+        let triangles = flat_sides::retriangulated(&exact, &self.triangles, self.radius)?;
+        Hull::in_order(points.to_vec(), &triangles).ok()
     }
 }
 

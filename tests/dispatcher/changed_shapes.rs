@@ -136,7 +136,7 @@ fn pyramid(mut points: Vec<Vector>, other_diagonal: bool) -> SharedShape {
     SharedShape::convex_mesh(points, &triangles).expect("parry takes it")
 }
 
-/// The names of features, and with them the order of points, depend on the edges.
+/// The names of features, and with them the order of points, may depend on the edges.
 #[test]
 fn the_same_points_with_other_edges_are_another_shape() {
     let dispatcher = IsaGjkDispatcher::default();
