@@ -16,7 +16,7 @@ use super::points::write_points;
 use super::scaled::Scale;
 use crate::both::both;
 use crate::hull::Hull;
-use crate::manifold::{self, ClipScratch};
+use crate::manifold::{self, ClipScratch, Contacts};
 use crate::pose::RelativePose;
 use crate::query::{self, Answer, Memory, Proximity, Query, Verdict};
 use crate::stats::{Cost, SharedStats, Stage};
@@ -78,12 +78,10 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             Memory::Contact(normal, features) => {
                 let verdict = query.certify(features);
                 if let Verdict::Certified(near) = &verdict {
-                    if self.keep_contacts(pair, &pose, near, cso.smaller_radius()) {
-                        self.stats.record(Stage::Kept, &cost);
-                        return Some(());
-                    }
-                    self.stats.record(Stage::Feature, &cost);
-                    self.write_contacts(pair, &cso, near, max_distance, &mut scratch.clip);
+                    let is_kept =
+                        self.update_contacts(pair, &cso, near, max_distance, &mut scratch.clip);
+                    let stage = if is_kept { Stage::Kept } else { Stage::Feature };
+                    self.stats.record(stage, &cost);
                     return Some(());
                 }
                 query.follow_contact(normal, features, &verdict)
@@ -94,10 +92,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         match answer {
             Answer::Apart(apart) => cache::write_axis(self.manifold, apart, frame),
             Answer::Near(near) => {
-                if self.keep_contacts(pair, &pose, near, cso.smaller_radius()) {
-                    return Some(());
-                }
-                self.write_contacts(pair, &cso, near, max_distance, &mut scratch.clip);
+                self.update_contacts(pair, &cso, near, max_distance, &mut scratch.clip);
             }
         }
         Some(())
@@ -139,10 +134,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                 max_distance,
                 &mut scratch.clip,
             );
-            let normals = both(normals(&near, &pose), |normal| normal.as_vec3());
-            [self.manifold.local_n1, self.manifold.local_n2] =
-                cache::ordered(normals, pair.swapped);
-            write_points(self.manifold, &contacts, pair.borders, pair.swapped);
+            self.write(pair, rounded(&near, &pose, pair.swapped), &contacts);
         }
         Some(())
     }
@@ -191,6 +183,13 @@ fn normals(near: &Proximity, pose: &RelativePose) -> [DVec3; 2] {
     [near.normal, -pose.direction_to_2(near.normal)]
 }
 
+/// The same in the manifold's order and precision.
+#[inline(always)]
+fn rounded(near: &Proximity, pose: &RelativePose, swapped: bool) -> [Vec3; 2] {
+    let normals = both(normals(near, pose), |normal| normal.as_vec3());
+    cache::ordered(normals, swapped)
+}
+
 impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
     /// To the routine for shapes with features, which searches with extreme vertices of the hull: ours
     /// climbs to them.
@@ -221,7 +220,36 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         cache::turn_axis(self.manifold, pair.swapped, rotation.inverse());
     }
 
-    /// Leaves the contacts where they are, if that is right. The depth along corrected normals is another.
+    /// Leaves the contacts where they are, if that is right, and returns whether it is. Otherwise it
+    /// chooses them anew.
+    #[inline(always)]
+    fn update_contacts<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        cso: &Cso<'_, Hull, B>,
+        near: &Proximity,
+        max_distance: f64,
+        scratch: &mut ClipScratch,
+    ) -> bool {
+        let normals = rounded(near, cso.pose, pair.swapped);
+        let Some(constrained) = self.constrained(cso, pair.swapped, max_distance, normals) else {
+            // Discarded: there is no contact, but there is a place to start from.
+            cache::write_start(self.manifold, near, cso);
+            return false;
+        };
+        // The query's depth says nothing about contacts along a corrected normal.
+        if !constrained[0].abs_diff_eq(normals[0], UNCORRECTED) {
+            self.write_corrected(pair, cso, (near, constrained), max_distance, scratch);
+            return false;
+        }
+        let is_kept = self.keep_contacts(pair, cso.pose, near, cso.smaller_radius());
+        if !is_kept {
+            self.write_contacts(pair, cso, near, max_distance, scratch);
+        }
+        is_kept
+    }
+
+    /// Leaves the contacts along the query's normal where they are, if that is right.
     #[inline(always)]
     fn keep_contacts<B>(
         &mut self,
@@ -237,10 +265,10 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
             radius,
             swapped: pair.swapped,
         };
-        matches!(self.constraints, [Constraints::None, Constraints::None])
-            && kept::keep_contacts(self.manifold, &present)
+        kept::keep_contacts(self.manifold, &present)
     }
 
+    /// Chooses contacts along the query's normal.
     fn write_contacts<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,
@@ -249,37 +277,35 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         max_distance: f64,
         scratch: &mut ClipScratch,
     ) {
-        let swapped = pair.swapped;
-        let normals = both(cache::ordered(normals(near, cso.pose), swapped), |n| {
-            n.as_vec3()
-        });
-        let Some([n1, n2]) = self.constrained(cso, swapped, max_distance, normals) else {
-            // Discarded: there is no contact, but there is a place to start from.
-            cache::write_start(self.manifold, near, cso);
-            return;
-        };
-        let is_corrected = !n1.abs_diff_eq(normals[0], UNCORRECTED);
-        let mut corrected = None;
-        if is_corrected {
-            let [normal, _] = cache::ordered([n1, n2], swapped);
-            let normal = normal.as_dvec3().normalize();
-            corrected = manifold::contacts_along(cso, near, normal, max_distance, scratch);
+        let contacts = manifold::contacts(cso, near, max_distance, scratch);
+        self.write(pair, rounded(near, cso.pose, pair.swapped), &contacts);
+    }
+
+    /// Chooses contacts along corrected `normals`, if each shape has a face that looks along its own.
+    fn write_corrected<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        cso: &Cso<'_, Hull, B>,
+        (near, normals): (&Proximity, [Vec3; 2]),
+        max_distance: f64,
+        scratch: &mut ClipScratch,
+    ) {
+        let [normal, _] = cache::ordered(normals, pair.swapped);
+        let normal = normal.as_dvec3().normalize();
+        match manifold::contacts_along(cso, near, normal, max_distance, scratch) {
+            Some(contacts) => self.write(pair, normals, &contacts),
             // What overlaps must be pushed out, if not along the corrected normal.
-            if corrected.is_none() && near.signed_distance >= 0.0 {
-                cache::write_start(self.manifold, near, cso);
-                return;
+            None if near.signed_distance < 0.0 => {
+                self.write_contacts(pair, cso, near, max_distance, scratch);
             }
+            None => cache::write_start(self.manifold, near, cso),
         }
-        let ([n1, n2], contacts) = match corrected {
-            Some(contacts) => ([n1, n2], contacts),
-            None => (
-                normals,
-                manifold::contacts(cso, near, max_distance, scratch),
-            ),
-        };
-        self.manifold.local_n1 = n1;
-        self.manifold.local_n2 = n2;
-        write_points(self.manifold, &contacts, pair.borders, swapped);
+    }
+
+    #[inline(always)]
+    fn write<B>(&mut self, pair: &Pair<'_, B>, normals: [Vec3; 2], contacts: &Contacts) {
+        [self.manifold.local_n1, self.manifold.local_n2] = normals;
+        write_points(self.manifold, contacts, pair.borders, pair.swapped);
     }
 
     /// The contact's normals as the constraints leave them, if they do.
@@ -292,7 +318,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         normals: [Vec3; 2],
     ) -> Option<[Vec3; 2]> {
         match self.constraints {
-            // Only parts of meshes have some.
+            // Only parts of meshes and compounds have some.
             [Constraints::None, Constraints::None] => Some(normals),
             both => constraints::correct(both, self.pos12, (cso, swapped), max_distance, normals),
         }

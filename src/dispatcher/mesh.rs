@@ -7,7 +7,9 @@
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::Pose;
-use parry3d::shape::{HeightField, Shape, TriMesh, Triangle, TrianglePseudoNormals};
+use parry3d::shape::{
+    HeightField, HeightFieldFlags, Shape, TriMesh, TriMeshFlags, Triangle, TrianglePseudoNormals,
+};
 
 use super::constraints::Constraints;
 use super::hulls::LastProved;
@@ -39,6 +41,14 @@ impl<'a> Triangles<'a> {
         }
     }
 
+    /// Whether the normals of its contacts are corrected.
+    fn is_flagged(self) -> bool {
+        match self {
+            Self::Mesh(mesh) => mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES),
+            Self::Field(field) => field.flags().contains(HeightFieldFlags::FIX_INTERNAL_EDGES),
+        }
+    }
+
     fn normals(self, id: u32) -> Option<TrianglePseudoNormals> {
         match self {
             Self::Mesh(mesh) => mesh.triangle_normal_constraints(id),
@@ -61,13 +71,18 @@ pub(super) fn triangles_and_hull<M, C>(
     let place = if swapped { pos12.inverse() } else { *pos12 };
     let near = hull.compute_aabb(&place).loosened(update.prediction);
     let mut hull = Part::whole(hull);
+    let is_flagged = triangles.is_flagged();
     triangles.each_near(&near, |id, triangle| {
         let normals = || triangles.normals(id);
         let mut part = Part {
             id,
             side: Side::new(triangle, LastProved::default()),
             pos: None,
-            constraints: Constraints::OfTriangle(&normals),
+            constraints: if is_flagged {
+                Constraints::OfTriangle(&normals)
+            } else {
+                Constraints::None
+            },
         };
         if swapped {
             update.parts(pos12, &mut hull, &mut part);

@@ -5,7 +5,9 @@ use std::f32::consts::TAU;
 use glam::DVec3;
 use isa_gjk::{IsaGjkDispatcher, Stage};
 use parry3d::math::{Pose, Real, Rotation, Vector};
-use parry3d::shape::SharedShape;
+use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
+use parry3d::shape::{HeightField, HeightFieldFlags, SharedShape, TriMeshFlags};
+use parry3d::utils::Array2;
 use testkit::generate::Dice;
 use testkit::memory::{Manifold, Memory, cold_manifold};
 
@@ -77,6 +79,68 @@ fn contacts_of_a_resting_body_keep_their_places() {
                 let kept = dispatcher.stats().answered[Stage::Kept as usize];
                 assert!(kept >= 15, "{what}: only {kept} of 49 updates kept");
             }
+        }
+    }
+}
+
+/// Flat squares made of triangles, without flags and with normals corrected for inner edges.
+fn triangulated_grounds() -> [SharedShape; 4] {
+    let mesh = |flags| {
+        let corners = [[-6.0, -6.0], [6.0, -6.0], [6.0, 6.0], [-6.0, 6.0]];
+        let corners = corners.map(|[x, z]| Vector::new(x, 0.0, z)).to_vec();
+        SharedShape::trimesh_with_flags(corners, vec![[0, 2, 1], [0, 3, 2]], flags).expect("flat")
+    };
+    let field = |flags| {
+        let heights = Array2::new(2, 2, vec![0.0; 4]);
+        let size = Vector::new(12.0, 1.0, 12.0);
+        SharedShape::new(HeightField::with_flags(heights, size, flags))
+    };
+    [
+        mesh(TriMeshFlags::empty()),
+        mesh(TriMeshFlags::FIX_INTERNAL_EDGES),
+        field(HeightFieldFlags::empty()),
+        field(HeightFieldFlags::FIX_INTERNAL_EDGES),
+    ]
+}
+
+/// Triangles have the same hysteresis as other shapes, as long as their normals stay uncorrected.
+#[test]
+fn contacts_on_triangles_keep_their_places() {
+    let mut dice = Dice::new(5);
+    for (i, ground) in triangulated_grounds().into_iter().enumerate() {
+        for sides in [3, 8, 64] {
+            let shape = prism(sides, 0.05);
+            let dispatcher = IsaGjkDispatcher::default();
+            let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+            let mut workspace = None;
+            let mut first = None;
+            for _ in 0..50 {
+                // Beside the inner edge.
+                let mut pose = rocked(0.399 * 0.05, 2e-7, &mut dice);
+                pose.translation += Vector::new(3.0, 0.0, -2.0);
+                let shapes = [&ground, &shape].map(|shape| &**shape);
+                dispatcher
+                    .contact_manifolds(
+                        &pose,
+                        shapes[0],
+                        shapes[1],
+                        PREDICTION,
+                        &mut manifolds,
+                        &mut workspace,
+                    )
+                    .expect("supported");
+                let mut places: Vec<_> = manifolds.iter().map(places).collect();
+                places.retain(|places| !places.is_empty());
+                assert_eq!(places.len(), 1, "ground {i}, {sides} sides");
+                assert!(places[0].len() >= 3, "ground {i}, {sides} sides");
+                let first = first.get_or_insert(places.clone());
+                assert_eq!(&places, first, "ground {i}, {sides} sides");
+            }
+            let kept = dispatcher.stats().answered[Stage::Kept as usize];
+            assert!(
+                kept >= 15,
+                "ground {i}, {sides} sides: only {kept} of 49 kept"
+            );
         }
     }
 }
