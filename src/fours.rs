@@ -7,12 +7,12 @@ use wide::{f32x4, f64x4};
 
 /// Four vectors.
 #[derive(Clone, Copy)]
-pub(crate) struct Vectors(pub [f64x4; 3]);
+pub(crate) struct DVec3x4(pub [f64x4; 3]);
 
-impl Vectors {
+impl DVec3x4 {
     /// The places of four things.
     #[inline(always)]
-    pub fn of<T>([a, b, c, d]: [T; 4], place: impl Fn(T) -> DVec3) -> Self {
+    pub fn gather<T>([a, b, c, d]: [T; 4], place: impl Fn(T) -> DVec3) -> Self {
         let [a, b, c, d] = [place(a), place(b), place(c), place(d)];
         Self([
             f64x4::new([a.x, b.x, c.x, d.x]),
@@ -23,7 +23,7 @@ impl Vectors {
 
     /// Multiples of one vector.
     #[inline(always)]
-    pub fn along(dir: DVec3, lengths: f64x4) -> Self {
+    pub fn scaled(dir: DVec3, lengths: f64x4) -> Self {
         Self([lengths * dir.x, lengths * dir.y, lengths * dir.z])
     }
 
@@ -40,13 +40,13 @@ impl Vectors {
     }
 
     #[inline(always)]
-    pub fn as_f32(self) -> [f32x4; 3] {
+    pub fn to_f32x4(self) -> [f32x4; 3] {
         let [x, y, z] = self.0;
-        [as_f32(x), as_f32(y), as_f32(z)]
+        [to_f32x4(x), to_f32x4(y), to_f32x4(z)]
     }
 }
 
-impl Sub for Vectors {
+impl Sub for DVec3x4 {
     type Output = Self;
 
     #[inline(always)]
@@ -56,7 +56,7 @@ impl Sub for Vectors {
     }
 }
 
-impl Add for Vectors {
+impl Add for DVec3x4 {
     type Output = Self;
 
     #[inline(always)]
@@ -66,7 +66,7 @@ impl Add for Vectors {
     }
 }
 
-impl Sub<DVec3> for Vectors {
+impl Sub<DVec3> for DVec3x4 {
     type Output = Self;
 
     #[inline(always)]
@@ -77,7 +77,7 @@ impl Sub<DVec3> for Vectors {
 }
 
 #[inline(always)]
-pub(crate) fn as_f32(four: f64x4) -> f32x4 {
+pub(crate) fn to_f32x4(four: f64x4) -> f32x4 {
     let [a, b, c, d] = four.to_array();
     f32x4::new([a as f32, b as f32, c as f32, d as f32])
 }

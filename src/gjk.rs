@@ -13,7 +13,7 @@ use glam::DVec3;
 use crate::simplex::{DistanceSubalgorithm, Nearest};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Support, VertexId};
-use crate::tolerance::{GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, TOUCHING};
+use crate::tolerance::{GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, MIN_DIRECTED_DISTANCE};
 
 /// Convergence is finite, and even the adversarial families need far fewer iterations; the
 /// bound only guards against a stall that no other test sees.
@@ -113,11 +113,11 @@ pub struct Closest {
 #[derive(Clone, Copy, Debug)]
 pub enum Outcome {
     /// The shapes are farther apart than asked for.
-    Apart(SeparatingAxis),
+    Separated(SeparatingAxis),
     /// The shapes are disjoint, this near.
-    Near(Closest),
+    Disjoint(Closest),
     /// The shapes touch or overlap: the origin lies in this simplex, up to rounding.
-    Overlap(Simplex),
+    Overlapping(Simplex),
 }
 
 /// A direction along which the shapes are separated, as it is kept for the next frame.
@@ -143,7 +143,7 @@ pub fn test_axis<A: Support, B: Support>(
     cost: &mut Cost,
 ) -> Result<SeparatingAxis, CsoVertex> {
     let (on_2, id_2) = cso.support_2(axis, start[1], cost);
-    // The ball around shape 1 may do: then none of its vertices is looked at. The axis may be longer
+    // The bounding sphere of shape 1 may do: then none of its vertices is looked at. The axis may be longer
     // than 1 by its rounding; half of 1 and its square is not less than its length.
     let longest = 0.5 + 0.5 * axis.length_squared();
     let reach_1 = axis.dot(cso.shape_1.center()) + cso.shape_1.radius() * longest;
@@ -214,14 +214,14 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
         cost.iterations += 1;
         let v = nearest.point;
         let norm = v.length();
-        if norm.partial_cmp(&(TOUCHING * size)) != Some(std::cmp::Ordering::Greater) {
-            return Outcome::Overlap(simplex);
+        if norm.partial_cmp(&(MIN_DIRECTED_DISTANCE * size)) != Some(std::cmp::Ordering::Greater) {
+            return Outcome::Overlapping(simplex);
         }
         let w = cso.support(-v, climb_start(cso, iteration, -v, ids), cost);
         ids = w.ids;
         let lower_bound = v.dot(w.w) / norm;
         if lower_bound > max_distance {
-            return Outcome::Apart(SeparatingAxis {
+            return Outcome::Separated(SeparatingAxis {
                 axis: -v / norm,
                 separation: lower_bound,
                 ids,
@@ -230,19 +230,19 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
         let between = norm - lower_bound;
         let converged = between <= GJK_GAP_OF_DISTANCE * norm || between <= absolute_gap;
         if converged || simplex.contains(&w) {
-            return Outcome::Near(closest(&simplex, &nearest, lower_bound));
+            return Outcome::Disjoint(closest(&simplex, &nearest, lower_bound));
         }
         let before = simplex.occupied;
         simplex.push(w);
         let next = simplex.nearest::<S>(DVec3::ZERO);
         if next.face == 0b1111 {
-            return Outcome::Overlap(simplex);
+            return Outcome::Overlapping(simplex);
         }
         // In exact arithmetic the norm decreases strictly; where it does not, rounding has the
         // last word and the answer at hand is as good as it gets.
         if next.point.length_squared() >= norm * norm {
             simplex.keep(before);
-            return Outcome::Near(closest(&simplex, &nearest, lower_bound));
+            return Outcome::Disjoint(closest(&simplex, &nearest, lower_bound));
         }
         nearest = next;
         simplex.keep(nearest.face);
@@ -250,12 +250,12 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
     cost.fallbacks += 1;
     let v = nearest.point;
     let lower_bound = v.dot(cso.support(-v, ids, cost).w) / v.length();
-    Outcome::Near(closest(&simplex, &nearest, lower_bound))
+    Outcome::Disjoint(closest(&simplex, &nearest, lower_bound))
 }
 
 /// In the first iterations the direction turns so far that a table knows a nearer vertex than the
 /// one found last.
-const TURNING: usize = 4;
+const TABLE_START_ITERATIONS: usize = 4;
 
 /// Where the climbs of an iteration begin.
 #[inline]
@@ -265,8 +265,8 @@ pub(crate) fn climb_start<A: Support, B: Support>(
     dir: DVec3,
     last: [VertexId; 2],
 ) -> [VertexId; 2] {
-    if iteration < TURNING {
-        cso.start(dir)
+    if iteration < TABLE_START_ITERATIONS {
+        cso.start_vertices(dir)
     } else {
         last
     }

@@ -4,50 +4,50 @@
 use wide::{f64x2, f64x4, u64x4};
 
 /// Keeps the greatest value of each lane, and chooses among them at the end.
-pub(crate) struct Greatest {
+pub(crate) struct ArgMax4 {
     values: f64x4,
     /// What each value is of: bits of whole numbers, since lanes are selected together with those of the
     /// values.
-    names: f64x4,
+    ids: f64x4,
 }
 
 /// The greatest value, and what it is of.
-pub(crate) struct Top {
-    pub name: u64,
+pub(crate) struct ArgMax {
+    pub id: u64,
     pub value: f64,
 }
 
-impl Greatest {
-    /// Of values above `least`. Where there are none it is this one, of the name 0.
+impl ArgMax4 {
+    /// Of values above `least`. Where there are none it is this one, with the id 0.
     #[inline(always)]
-    pub fn above(least: f64) -> Self {
+    pub fn new(least: f64) -> Self {
         Self {
             values: f64x4::splat(least),
-            names: f64x4::ZERO,
+            ids: f64x4::ZERO,
         }
     }
 
     #[inline(always)]
-    pub fn look_at(&mut self, values: f64x4, names: u64x4) {
+    pub fn update(&mut self, values: f64x4, ids: u64x4) {
         let greater = values.simd_gt(self.values);
         self.values = greater.bitselect(values, self.values);
-        self.names = greater.bitselect(bytemuck::cast(names), self.names);
+        self.ids = greater.bitselect(bytemuck::cast(ids), self.ids);
     }
 
     /// The greatest value. Of lanes that tie, lane 0 wins, then 2, 1 and 3; within a lane, the first
     /// value offered. (The two halves are compared first, and then the lanes of the result: a shorter
     /// dependency chain than lane by lane.)
     #[inline(always)]
-    pub fn top(self) -> Top {
+    pub fn finish(self) -> ArgMax {
         let [low, high]: [f64x2; 2] = bytemuck::cast(self.values);
-        let [low_names, high_names]: [f64x2; 2] = bytemuck::cast(self.names);
+        let [low_ids, high_ids]: [f64x2; 2] = bytemuck::cast(self.ids);
         let greater = high.simd_gt(low);
         let values = greater.bitselect(high, low).to_array();
-        let names = greater.bitselect(high_names, low_names).to_array();
+        let ids = greater.bitselect(high_ids, low_ids).to_array();
         let second = values[1] > values[0];
-        let name = if second { names[1] } else { names[0] };
-        Top {
-            name: name.to_bits(),
+        let id = if second { ids[1] } else { ids[0] };
+        ArgMax {
+            id: id.to_bits(),
             value: if second { values[1] } else { values[0] },
         }
     }

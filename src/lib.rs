@@ -79,7 +79,7 @@
 //! ```
 //! use isa_gjk::epa::EpaScratch;
 //! use isa_gjk::pose::RelativePose;
-//! use isa_gjk::query::{Answer, Memory, Query};
+//! use isa_gjk::query::{Answer, PairMemory, Query};
 //! use isa_gjk::stats::Cost;
 //! use isa_gjk::support::Cso;
 //! use isa_gjk::Hull;
@@ -91,11 +91,11 @@
 //! let mut query = Query {
 //!     cso: &Cso { shape_1: &hull, shape_2: &hull, pose: &pose },
 //!     max_distance: f64::INFINITY,
-//!     shells: None,
+//!     polytope_cache: None,
 //!     scratch: &mut EpaScratch::default(),
 //!     cost: &mut Cost::default(),
 //! };
-//! let (answer, _stage) = query.run(&Memory::None).expect("finite solids");
+//! let (answer, _stage) = query.run(&PairMemory::None).expect("finite solids");
 //! let Answer::Near(near) = answer else { unreachable!("nothing is beyond infinity") };
 //! assert!((near.signed_distance - 0.5).abs() < 1e-9);
 //! # Ok::<(), isa_gjk::HullError>(())

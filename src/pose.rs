@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use parry3d::math::Pose;
 
-use crate::fours::Vectors;
+use crate::fours::DVec3x4;
 use crate::tolerance::NEARLY_UNIT;
 
 /// Maps points and directions between the frames of a pair: frame 1 is the first shape's.
@@ -18,7 +18,7 @@ pub struct RelativePose {
 /// One Newton step of the reciprocal root; a root and a division would be the longest dependency of a
 /// whole separated query. Off by 3/8 of the excess squared.
 #[inline(always)]
-pub(crate) fn to_unit(length_squared: f64) -> f64 {
+pub(crate) fn unit_scale(length_squared: f64) -> f64 {
     let excess = length_squared - 1.0;
     if excess.abs() < NEARLY_UNIT {
         1.0 - 0.5 * excess
@@ -42,7 +42,7 @@ impl RelativePose {
         let q = pos12.rotation;
         let q = DQuat::from_xyzw(q.x.into(), q.y.into(), q.z.into(), q.w.into());
         Self {
-            rotation: DMat3::from_quat(q * to_unit(q.length_squared())),
+            rotation: DMat3::from_quat(q * unit_scale(q.length_squared())),
             translation: pos12.translation.as_dvec3(),
         }
     }
@@ -98,7 +98,7 @@ impl RelativePose {
 
     /// Four points of frame 2, in frame 1.
     #[inline(always)]
-    pub(crate) fn points_to_1(&self, points: Vectors) -> Vectors {
+    pub(crate) fn points_to_1(&self, points: DVec3x4) -> DVec3x4 {
         let row = |axis: usize| {
             let row = DVec3::new(
                 self.rotation.x_axis[axis],
@@ -107,14 +107,14 @@ impl RelativePose {
             );
             points.dot(row) + self.translation[axis]
         };
-        Vectors([row(0), row(1), row(2)])
+        DVec3x4([row(0), row(1), row(2)])
     }
 
     /// Four points of frame 1, in frame 2.
     #[inline(always)]
-    pub(crate) fn points_to_2(&self, points: Vectors) -> Vectors {
+    pub(crate) fn points_to_2(&self, points: DVec3x4) -> DVec3x4 {
         let from = points - self.translation;
-        Vectors([
+        DVec3x4([
             from.dot(self.rotation.x_axis),
             from.dot(self.rotation.y_axis),
             from.dot(self.rotation.z_axis),

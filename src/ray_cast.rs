@@ -77,14 +77,14 @@ pub fn ray_cast<S: DistanceSubalgorithm, A: Support, B: Support>(
             return RayCast::Miss;
         }
         if norm <= target_distance + ray.tolerance() {
-            return ray.arrived(&simplex, &nearest);
+            return ray.impact(&simplex, &nearest);
         }
         let vertex = cso.support(-toward, climb_start(cso, iteration, -toward, ids), cost);
         ids = vertex.ids;
         let advanced = match ray.advance(toward / norm, vertex.w) {
-            Step::Advanced if ray.time <= max_time => true,
-            Step::Stays => false,
-            Step::Advanced | Step::Leaves => return RayCast::Miss,
+            Advance::Advanced if ray.time <= max_time => true,
+            Advance::NoProgress => false,
+            Advance::Advanced | Advance::Diverges => return RayCast::Miss,
         };
         let known = simplex.contains(&vertex);
         if !known {
@@ -94,14 +94,14 @@ pub fn ray_cast<S: DistanceSubalgorithm, A: Support, B: Support>(
         // Without progress the nearest point is as near as rounding lets it come, and no plane
         // separates it: this is the impact.
         if !advanced && (known || next.point.length_squared() >= norm * norm) {
-            return ray.arrived(&simplex, &nearest);
+            return ray.impact(&simplex, &nearest);
         }
         simplex.keep(next.face);
         nearest = next;
     }
     // Too early a contact is better than none.
     cost.fallbacks += 1;
-    ray.arrived(&simplex, &nearest)
+    ray.impact(&simplex, &nearest)
 }
 
 /// The point that marches along the ray.
@@ -115,13 +115,13 @@ struct Ray {
 }
 
 /// What a support plane does to the point of the ray.
-enum Step {
+enum Advance {
     /// It separated; the point now is on it.
     Advanced,
     /// It does not separate.
-    Stays,
+    NoProgress,
     /// It separates, and the ray does not lead through it.
-    Leaves,
+    Diverges,
 }
 
 impl Ray {
@@ -134,26 +134,26 @@ impl Ray {
     }
 
     /// Moves on to the support plane through `vertex`, whose inward normal is `direction`.
-    fn advance(&mut self, direction: DVec3, vertex: DVec3) -> Step {
+    fn advance(&mut self, direction: DVec3, vertex: DVec3) -> Advance {
         let separation = direction.dot(vertex - self.point()) - self.target_distance;
         if separation <= 0.0 {
-            return Step::Stays;
+            return Advance::NoProgress;
         }
         let approach = direction.dot(self.velocity);
         let time = self.time + separation / approach;
         // Also for NaN, and for a plane so slant that it is never reached.
         if !(approach > 0.0 && time.is_finite()) {
-            return Step::Leaves;
+            return Advance::Diverges;
         }
         if time <= self.time {
-            return Step::Stays;
+            return Advance::NoProgress;
         }
         self.time = time;
         self.separating = Some(direction);
-        Step::Advanced
+        Advance::Advanced
     }
 
-    fn arrived(&self, simplex: &Simplex, nearest: &Nearest) -> RayCast {
+    fn impact(&self, simplex: &Simplex, nearest: &Nearest) -> RayCast {
         let Some(separating) = self.separating else {
             return RayCast::Overlap;
         };

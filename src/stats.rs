@@ -9,8 +9,8 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 #[repr(u8)]
 #[non_exhaustive]
 pub enum Stage {
-    /// The balls around the shapes are apart, or that around a hull is above a half-space.
-    Balls,
+    /// The bounding spheres are apart, or that of a hull is above a half-space.
+    BoundingSpheres,
     /// One or two support pairs proved separation: along the axis of the previous frame (the line
     /// of centres, for a new pair), or along one tilted from it.
     Axis,
@@ -21,9 +21,9 @@ pub enum Stage {
     /// hull's lowest vertex over a half-space, with or without a previous frame, gave them.
     Feature,
     /// Features near the previous ones, or near that axis, did: walked to from facet to facet.
-    Walk,
+    FacetWalk,
     /// Such features, with the polytope of a previous frame re-evaluated, certified a depth.
-    Shell,
+    CachedPolytope,
     /// GJK started from the previous frame's axis and vertices.
     WarmGjk,
     /// Penetration depth expanded from the previous frame's features.
@@ -39,12 +39,12 @@ impl Stage {
     pub const COUNT: usize = 10;
     /// All stages, in the order of [`Stats::answered`].
     pub const ALL: [Self; Self::COUNT] = [
-        Self::Balls,
+        Self::BoundingSpheres,
         Self::Axis,
         Self::Kept,
         Self::Feature,
-        Self::Walk,
-        Self::Shell,
+        Self::FacetWalk,
+        Self::CachedPolytope,
         Self::WarmGjk,
         Self::WarmEpa,
         Self::ColdGjk,
@@ -54,12 +54,12 @@ impl Stage {
     /// A short name for tables.
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Balls => "balls",
+            Self::BoundingSpheres => "spheres",
             Self::Axis => "axis",
             Self::Kept => "kept",
             Self::Feature => "feature",
-            Self::Walk => "walk",
-            Self::Shell => "shell",
+            Self::FacetWalk => "facet walk",
+            Self::CachedPolytope => "cached polytope",
             Self::WarmGjk => "warm GJK",
             Self::WarmEpa => "warm EPA",
             Self::ColdGjk => "cold GJK",

@@ -20,18 +20,18 @@ pub trait Support {
     ///
     /// # Panics
     ///
-    /// Perhaps, if `start` is no vertex of the shape: see [`valid_start`](Self::valid_start).
+    /// Perhaps, if `start` is no vertex of the shape: see [`clamp_vertex`](Self::clamp_vertex).
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId);
 
     /// A start for [`support`](Self::support) when no similar query is known.
     #[inline]
-    fn start(&self, _dir: DVec3) -> VertexId {
+    fn start_vertex(&self, _dir: DVec3) -> VertexId {
         0
     }
 
     /// `vertex` if the shape has it, else some vertex that it has.
     #[inline]
-    fn valid_start(&self, _vertex: VertexId) -> VertexId {
+    fn clamp_vertex(&self, _vertex: VertexId) -> VertexId {
         0
     }
 
@@ -49,9 +49,9 @@ pub trait Support {
 pub type FaceId = u32;
 
 /// The corners of a polygon in their order.
-pub trait Corners: ExactSizeIterator<Item = DVec3> + DoubleEndedIterator + Clone {}
+pub trait FacePoints: ExactSizeIterator<Item = DVec3> + DoubleEndedIterator + Clone {}
 
-impl<T: ExactSizeIterator<Item = DVec3> + DoubleEndedIterator + Clone> Corners for T {}
+impl<T: ExactSizeIterator<Item = DVec3> + DoubleEndedIterator + Clone> FacePoints for T {}
 
 /// A convex polytope: a support mapping with faces and edges around it.
 ///
@@ -93,43 +93,43 @@ pub trait Polytope: Support {
 
     /// Four of the corners of a face, in f32.
     #[inline(always)]
-    fn four_corners(&self, face: FaceId, numbers: [usize; 4]) -> [Vec3; 4] {
+    fn face_points_x4(&self, face: FaceId, numbers: [usize; 4]) -> [Vec3; 4] {
         let [a, b, c, d] = numbers;
         let corner = |i| self.vertex(self.face_vertex(face, i)).as_vec3();
         [corner(a), corner(b), corner(c), corner(d)]
     }
 
     /// The corners of a face, counter-clockwise seen from outside.
-    fn corners(&self, face: FaceId) -> impl Corners {
+    fn face_points(&self, face: FaceId) -> impl FacePoints {
         (0..self.face_len(face)).map(move |i| self.vertex(self.face_vertex(face, i)))
     }
 
     /// The face at `vertex` that looks most in direction `dir`.
-    fn face_at(&self, vertex: VertexId, dir: DVec3) -> FaceId;
+    fn face_at_vertex(&self, vertex: VertexId, dir: DVec3) -> FaceId;
 
-    /// Of the faces on both sides of an edge, given by its name, the one that looks most in
+    /// Of the faces on both sides of an edge, the one that looks most in
     /// direction `dir`; some face if there is no such edge.
-    fn face_beside(&self, edge: u32, dir: DVec3) -> FaceId;
+    fn face_at_edge(&self, edge: u32, dir: DVec3) -> FaceId;
 
-    /// The name of the edge between two neighbouring vertices.
-    fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32>;
+    /// The id of the edge between two neighbouring vertices.
+    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<u32>;
 
-    /// The name of the edge from the `i`-th vertex of a face to the next.
+    /// The id of the edge from the `i`-th vertex of a face to the next.
     fn face_edge(&self, face: FaceId, i: usize) -> Option<u32> {
         let next = (i + 1) % self.face_len(face);
-        self.edge_id(self.face_vertex(face, i), self.face_vertex(face, next))
+        self.edge_between(self.face_vertex(face, i), self.face_vertex(face, next))
     }
 
-    /// If a face has neighbours that lie nearly in its plane: the name of a convex polygon around
+    /// If a face has neighbours that lie nearly in its plane: the id of a convex polygon around
     /// them all, which `face_len`, `face_vertex` and `face_edge` know though it is no face; and
     /// the faces under it.
-    fn cap(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
+    fn cluster(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
         let _ = face;
         None
     }
 
     /// The end vertices of an edge.
-    fn edge(&self, id: u32) -> Option<[VertexId; 2]>;
+    fn edge_ends(&self, id: u32) -> Option<[VertexId; 2]>;
 }
 
 /// A vertex of the Minkowski difference: its position and where it comes from (frame 1).
@@ -199,10 +199,10 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
     }
 
     /// Start vertices for direction `dir` when nothing is known.
-    pub fn start(&self, dir: DVec3) -> [VertexId; 2] {
+    pub fn start_vertices(&self, dir: DVec3) -> [VertexId; 2] {
         [
-            self.shape_1.start(dir),
-            self.shape_2.start(-self.pose.direction_to_2(dir)),
+            self.shape_1.start_vertex(dir),
+            self.shape_2.start_vertex(-self.pose.direction_to_2(dir)),
         ]
     }
 
@@ -210,7 +210,7 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
     /// are round: the first vertex of a search that knows nothing.
     pub fn vertex_towards_origin(&self, cost: &mut Cost) -> CsoVertex {
         let dir = self.towards_origin();
-        self.support(dir, self.start(dir), cost)
+        self.support(dir, self.start_vertices(dir), cost)
     }
 
     /// The unit direction from the centre to the origin, which is that from the centre of shape 1 to
@@ -234,20 +234,20 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
         self.shape_1.center() - self.pose.point_to_1(self.shape_2.center())
     }
 
-    /// The line of centres, and by how much the balls around the shapes are apart along it, if that
+    /// The line of centres, and by how much the bounding spheres are apart along it, if that
     /// is more than `beyond`.
     #[inline(always)]
-    pub fn test_balls(&self, beyond: f64) -> Option<(DVec3, f64)> {
-        self.has_balls_apart(beyond).then(|| {
+    pub fn spheres_apart(&self, beyond: f64) -> Option<(DVec3, f64)> {
+        self.are_spheres_apart(beyond).then(|| {
             let offset = -self.center();
             let distance = offset.length();
             (offset / distance, distance - self.size())
         })
     }
 
-    /// Whether the balls around the shapes are apart by more than `beyond`.
+    /// Whether the bounding spheres are apart by more than `beyond`.
     #[inline(always)]
-    pub fn has_balls_apart(&self, beyond: f64) -> bool {
+    pub fn are_spheres_apart(&self, beyond: f64) -> bool {
         let reach = self.size() + beyond;
         let squared = self.center().length_squared();
         reach >= 0.0 && squared.partial_cmp(&(reach * reach)) == Some(Ordering::Greater)
@@ -261,7 +261,7 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
 
     /// The length that tolerances must not exceed if the smaller shape is to keep its accuracy.
     #[inline]
-    pub fn smaller_radius(&self) -> f64 {
+    pub fn min_radius(&self) -> f64 {
         self.shape_1.radius().min(self.shape_2.radius())
     }
 }

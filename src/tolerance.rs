@@ -19,19 +19,19 @@ pub const FACE_FLATNESS: f64 = 6e-7;
 /// (cosine), so that slivers of arbitrary direction cannot chain a face around a corner.
 pub const FACE_ANGLE_COS: f64 = COS_1_DEGREE;
 
-/// Faces within 1 degree (cosine) of a larger one around which they lie are a cap with it:
+/// Faces within 1 degree (cosine) of a larger one around which they lie form a face cluster with it:
 /// contacts are sought on all of them together. Distances are measured to the faces themselves, so
 /// that the angle decides only how many corners are looked at; f32 rounding and scanning noise
 /// stay below it, and the facets of round hulls of a thousand vertices above.
-pub const CAP_ANGLE_COS: f64 = COS_1_DEGREE;
+pub const CLUSTER_ANGLE_COS: f64 = COS_1_DEGREE;
 
 /// A triangle lower than this share of the radius is a sliver: rounding of its corners can turn
 /// its plane by several degrees.
-pub const SLIVER: f64 = 4e-6;
+pub const MIN_TRIANGLE_HEIGHT: f64 = 4e-6;
 
 /// Greatest depth of a concave edge, relative to the radius: sixteen f32 roundings. On a needle a climb
 /// may lose more than the depth of its dents.
-pub const CONVEXITY: f64 = 1e-6;
+pub const MAX_DENT: f64 = 1e-6;
 
 /// How far (relative to the radius) a hull may reach beyond the plane of a face: many dents in a row
 /// make a bowl. The noise of scanned plates stays below it.
@@ -51,22 +51,22 @@ pub const BENT_EDGE: f64 = 2.0 * FLAT_EDGE;
 
 /// A triangle lower than this share of the radius may face inwards by the rounding of its corners;
 /// a higher one that does is a fold of the surface. Ten f32 roundings.
-pub const FOLD: f64 = 6e-7;
+pub const MAX_INWARD_HEIGHT: f64 = 6e-7;
 
 /// A hull whose smallest extent is below this share of its radius has no usable interior.
-pub const THINNEST: f64 = 1e-6;
+pub const MIN_EXTENT: f64 = 1e-6;
 
 /// A hull whose centre is deeper than this share of its radius beneath all faces is thick enough for the
 /// f32 decisions of parry's hull builder: of thousands of clouds down to a seventh of it none lost a corner.
-pub const THICK: f64 = 0.05;
+pub const MIN_TRUSTED_THICKNESS: f64 = 0.05;
 
 /// A point of a cloud may lie outside the hull that was built around it by this share of the radius. Two
 /// such hulls must leave the sum of all errors below the promise: see `WORST_ERROR`.
-pub const LEFT_OUT: f64 = 4e-6;
+pub const MAX_LEFT_OUT: f64 = 4e-6;
 
 /// Two support values closer than this share of `radius * |direction|` tie for hill climbing:
 /// vertices that are coplanar up to f32 rounding must be seen as one plateau.
-pub const PLATEAU: f64 = 4e-7;
+pub const SUPPORT_TIE: f64 = 4e-7;
 
 /// An edge shorter than this share of the radius may rise or fall by its ends' rounding alone, as
 /// steeply as anything that is climbed.
@@ -74,7 +74,7 @@ pub const SHORT_EDGE: f64 = 1e-2;
 
 /// The way up from a false summit may begin with a step down by this share of `radius * |direction|`:
 /// a vertex is beneath its neighbours by no more than a few dents.
-pub const DIP: f64 = 4.0 * CONVEXITY;
+pub const DIP: f64 = 4.0 * MAX_DENT;
 
 /// GJK stops when its bounds of the distance differ by less than this share of the distance...
 pub const GJK_GAP_OF_DISTANCE: f64 = 1e-9;
@@ -89,7 +89,7 @@ pub const GJK_CURVED_GAP: f64 = 1e-6;
 /// A distance below this share of the pair's size has no reliable direction; the penetration
 /// search, which works on planes, answers instead. Shapes this near touch, for every query: rounding in
 /// f64 is far less, and one step of f32 far more.
-pub const TOUCHING: f64 = 1e-10;
+pub const MIN_DIRECTED_DISTANCE: f64 = 1e-10;
 
 /// A penetration depth is certified when upper and lower bound differ by less than this share
 /// of the smaller shape's radius: a tenth of the promised accuracy.
@@ -212,10 +212,10 @@ pub(crate) const WORST_ERROR: f64 = POSE_ERROR
 const POSE_ERROR: f64 = NEARLY_UNIT * NEARLY_UNIT;
 /// What a climb may lose, on each shape: four plateaus on dented hulls, two dents on long needles.
 const CLIMB_ERROR: f64 = 2.0
-    * if 2.0 * PLATEAU > CONVEXITY {
-        4.0 * PLATEAU
+    * if 2.0 * SUPPORT_TIE > MAX_DENT {
+        4.0 * SUPPORT_TIE
     } else {
-        2.0 * CONVEXITY
+        2.0 * MAX_DENT
     };
 /// The corners of a face lie beneath its plane; a face of each shape.
 const FACE_ERROR: f64 = 2.0 * FACE_FLATNESS;
@@ -226,7 +226,7 @@ const DEPTH_ERROR: f64 = 2.0 * DEPTH_GAP;
 /// Depths, which are at most two radii, are rounded to f32 by half a unit.
 const OUTPUT_ERROR: f64 = f32::EPSILON as f64;
 /// Points of a cloud outside its hull; on each shape.
-const CLOUD_ERROR: f64 = 2.0 * LEFT_OUT;
+const CLOUD_ERROR: f64 = 2.0 * MAX_LEFT_OUT;
 
 const _: () = assert!(
     WORST_ERROR <= PROMISED_ERROR,

@@ -88,11 +88,11 @@ impl Support for Cloud {
         (self.points[best.1], best.1 as VertexId)
     }
 
-    fn start(&self, _: DVec3) -> VertexId {
+    fn start_vertex(&self, _: DVec3) -> VertexId {
         0
     }
 
-    fn valid_start(&self, _: VertexId) -> VertexId {
+    fn clamp_vertex(&self, _: VertexId) -> VertexId {
         0
     }
 

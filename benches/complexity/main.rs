@@ -9,10 +9,10 @@ use std::time::Instant;
 use families::{Cloud, direction, orbit, sphere};
 use glam::{DQuat, DVec3};
 use isa_gjk::Hull;
-use isa_gjk::epa::{EpaScratch, Shells};
+use isa_gjk::epa::{EpaScratch, PolytopeCache};
 use isa_gjk::pose::RelativePose;
 use isa_gjk::primitive::Ball;
-use isa_gjk::query::{Memory, Query};
+use isa_gjk::query::{PairMemory, Query};
 use isa_gjk::stats::Cost;
 use isa_gjk::support::{Cso, Support};
 use observed::{Direction, Observation, run};
@@ -63,8 +63,8 @@ fn measure(hulls: &[Hull; 2], poses: &[Pose], max_distance: f64, coherent: bool)
     let mut total = [0_u64; 3];
     for _ in 0..REPEATS {
         total = [0; 3];
-        let mut memory = Memory::None;
-        let mut shells = Shells::default();
+        let mut memory = PairMemory::None;
+        let mut cache = PolytopeCache::default();
         let clock = Instant::now();
         for pose in &poses {
             let mut cost = Cost::default();
@@ -75,11 +75,11 @@ fn measure(hulls: &[Hull; 2], poses: &[Pose], max_distance: f64, coherent: bool)
                     pose,
                 },
                 max_distance,
-                shells: coherent.then_some((&mut shells, 0)),
+                polytope_cache: coherent.then_some((&mut cache, 0)),
                 scratch: &mut scratch,
                 cost: &mut cost,
             }
-            .run(if coherent { &memory } else { &Memory::None });
+            .run(if coherent { &memory } else { &PairMemory::None });
             let counts = [cost.iterations, cost.supports, cost.climb_moves];
             for (sum, count) in total.iter_mut().zip(counts) {
                 *sum += u64::from(count);
@@ -141,7 +141,7 @@ fn between<const WATCH: bool, A: Support, B: Support>(
         pose,
     };
     let along = (-cso.center()).normalize_or(DVec3::X);
-    let start = cso.support(along, cso.start(along), &mut Cost::default());
+    let start = cso.support(along, cso.start_vertices(along), &mut Cost::default());
     run::<WATCH, _, _>(&cso, start, direction)
 }
 

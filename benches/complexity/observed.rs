@@ -7,7 +7,7 @@ use glam::DVec3;
 use isa_gjk::simplex::{DistanceSubalgorithm, Voronoi};
 use isa_gjk::stats::Cost;
 use isa_gjk::support::{Cso, CsoVertex, Support};
-use isa_gjk::tolerance::{GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, TOUCHING};
+use isa_gjk::tolerance::{GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, MIN_DIRECTED_DISTANCE};
 
 /// How the next support direction is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +47,7 @@ pub fn run<const WATCH: bool, A: Support, B: Support>(
     let mut accelerated = direction == Direction::Nesterov;
     while seen.iterations < MOST {
         seen.distance = x.length();
-        if seen.distance <= TOUCHING * size {
+        if seen.distance <= MIN_DIRECTED_DISTANCE * size {
             return seen;
         }
         d = if accelerated {

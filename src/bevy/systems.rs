@@ -139,7 +139,7 @@ fn sync(mut context: ResMut<PhysicsContext>, bodies: Query<BodyQuery<'_>, Anythi
         if body.is_changed() {
             context.set_body(entity, &body, *transform, *velocity);
         } else {
-            obey(context, entity, &transform, &velocity);
+            apply_user_changes(context, entity, &transform, &velocity);
         }
         if let Some(collider) = collider
             && (collider.is_changed() || body.is_changed() && context.collider(entity).is_none())
@@ -150,7 +150,7 @@ fn sync(mut context: ResMut<PhysicsContext>, bodies: Query<BodyQuery<'_>, Anythi
 }
 
 /// Moves a body as the user has moved its entity.
-fn obey(
+fn apply_user_changes(
     context: &mut PhysicsContext,
     entity: Entity,
     transform: &Ref<'_, PhysicsTransform>,

@@ -6,7 +6,7 @@
 //!
 //! - without points, `local_n1` is the separating axis (parry's own habit) in an [`AxisFrame`], and
 //!   `local_n2`, which nobody reads then, holds the two extreme vertices as whole numbers; of a pair
-//!   whose balls are apart it is zero;
+//!   whose bounding spheres are apart it is zero;
 //! - with points, `local_n1` is the contact normal, and the feature ids of the first point name
 //!   the features in contact.
 //!
@@ -18,10 +18,10 @@ use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
 use wide::u32x4;
 
-use crate::both::both;
+use crate::both::map_pair;
 use crate::gjk::SeparatingAxis;
 use crate::pose::RelativePose;
-use crate::query::{self, Feature, Memory, Proximity};
+use crate::query::{self, Feature, PairMemory, Proximity};
 use crate::support::{Cso, Polytope, Support, VertexId};
 use crate::tolerance::NEARLY_UNIT;
 
@@ -48,7 +48,7 @@ impl<'a> AxisFrame<'a> {
 
     /// From the frame of the kernels' first shape.
     #[inline]
-    fn keep(self, axis: DVec3) -> DVec3 {
+    fn to_stored(self, axis: DVec3) -> DVec3 {
         match self {
             Self::First => axis,
             Self::Second(pose) => pose.direction_to_2(axis),
@@ -57,7 +57,7 @@ impl<'a> AxisFrame<'a> {
 
     /// To the frame of the kernels' first shape.
     #[inline]
-    fn recall(self, axis: DVec3) -> DVec3 {
+    fn to_kernel(self, axis: DVec3) -> DVec3 {
         match self {
             Self::First => axis,
             Self::Second(pose) => pose.direction_to_1(axis),
@@ -71,24 +71,24 @@ pub(super) fn read<M, C>(
     manifold: &ContactManifold<M, C>,
     swapped: bool,
     frame: AxisFrame<'_>,
-) -> Memory {
+) -> PairMemory {
     let stored = if swapped && !manifold.points.is_empty() {
         manifold.local_n2
     } else {
         manifold.local_n1
     };
     let Some(axis) = unit(stored) else {
-        return Memory::None;
+        return PairMemory::None;
     };
     match deepest(&manifold.points) {
         None => {
             let n2 = manifold.local_n2;
             // Casts saturate, and NaN becomes 0: any vector is some pair of vertices.
-            Memory::Axis(frame.recall(axis), [n2.x as u32, n2.y as u32])
+            PairMemory::Axis(frame.to_kernel(axis), [n2.x as u32, n2.y as u32])
         }
         Some(point) => match (unpack(point.fid1), unpack(point.fid2)) {
-            (Some(f1), Some(f2)) => Memory::Contact(axis, ordered([f1, f2], swapped)),
-            _ => Memory::Axis(axis, [0, 0]),
+            (Some(f1), Some(f2)) => PairMemory::Contact(axis, ordered([f1, f2], swapped)),
+            _ => PairMemory::Axis(axis, [0, 0]),
         },
     }
 }
@@ -114,13 +114,13 @@ pub(super) fn forget<M, C>(manifold: &mut ContactManifold<M, C>) {
 
 /// Leaves a separating axis in a manifold without points.
 #[inline(always)]
-pub(super) fn write_axis<M, C>(
+pub(super) fn set_axis<M, C>(
     manifold: &mut ContactManifold<M, C>,
     apart: &SeparatingAxis,
     frame: AxisFrame<'_>,
 ) {
     manifold.points.clear();
-    manifold.local_n1 = frame.keep(apart.axis).as_vec3();
+    manifold.local_n1 = frame.to_stored(apart.axis).as_vec3();
     manifold.local_n2 = as_vector(apart.ids);
 }
 
@@ -133,7 +133,7 @@ fn as_vector(ids: [VertexId; 2]) -> Vec3 {
 /// Parry's routines keep a separating axis in the frame of the manifold's first shape, as one from
 /// it to the second: from ours to theirs by the `rotation` of the second in that frame, and back by its
 /// inverse.
-pub(super) fn turn_axis<M, C>(
+pub(super) fn convert_parry_axis<M, C>(
     manifold: &mut ContactManifold<M, C>,
     swapped: bool,
     rotation: Rotation,
@@ -144,7 +144,7 @@ pub(super) fn turn_axis<M, C>(
 }
 
 /// Leaves a contact that was discarded, as a place for the next query to start from.
-pub(super) fn write_start<A: Polytope, B: Polytope, M, C>(
+pub(super) fn set_hint<A: Polytope, B: Polytope, M, C>(
     manifold: &mut ContactManifold<M, C>,
     near: &Proximity,
     cso: &Cso<'_, A, B>,
@@ -154,7 +154,7 @@ pub(super) fn write_start<A: Polytope, B: Polytope, M, C>(
         separation: near.signed_distance,
         ids: query::vertices(cso, near.features),
     };
-    write_axis(manifold, &start, AxisFrame::of(cso));
+    set_axis(manifold, &start, AxisFrame::of(cso));
 }
 
 /// What belongs to the two shapes of a pair, from the kernels' order to the manifold's or back.
@@ -191,10 +191,10 @@ pub(super) fn pack(feature: Feature) -> PackedFeatureId {
 /// by the packed features of both shapes. A vertex that moves on from one face to the next stays what it
 /// is.
 #[inline(always)]
-pub(super) fn identities([a, b]: [u32x4; 2]) -> [u32x4; 2] {
+pub(super) fn feature_keys([a, b]: [u32x4; 2]) -> [u32x4; 2] {
     let [kind, face] = [u32x4::splat(KIND), u32x4::splat(FACE)];
     let vertex_and_face = ((a ^ b) & kind).simd_eq(u32x4::splat(VERTEX ^ FACE));
-    both([a, b], |id| {
+    map_pair([a, b], |id| {
         let unnamed = vertex_and_face & (id & kind).simd_eq(face);
         unnamed.bitselect(face, id)
     })

@@ -5,11 +5,11 @@ use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus};
 use parry3d::shape::{PolygonalFeatureMap, Shape};
 
-use super::pair::{self, Pair, PairVisitor, Scratch};
-use super::scene::{Near, Seen};
+use super::pair::{self, Pair, PairVisitor, Workspace};
+use super::scene::{CallerProximity, KernelFrame};
 use crate::hull::Hull;
 use crate::pose::RelativePose;
-use crate::query::{Answer, Memory, Query};
+use crate::query::{Answer, PairMemory, Query};
 use crate::ray_cast::{Impact, RayCast, ray_cast};
 use crate::simplex::Preferred;
 use crate::stats::Cost;
@@ -47,10 +47,10 @@ impl PairVisitor for Cast<'_> {
     fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,
-        scratch: &mut Scratch,
+        workspace: &mut Workspace,
     ) -> Option<Self::Answer> {
-        self.cast(pair, |cso, velocity, seen| {
-            self.overlap(cso, velocity, seen, scratch)
+        self.cast(pair, |cso, velocity, frame| {
+            self.overlap(cso, velocity, frame, workspace)
         })
     }
 
@@ -59,7 +59,7 @@ impl PairVisitor for Cast<'_> {
         &mut self,
         pair: &Pair<'_, B>,
         _: &dyn PolygonalFeatureMap,
-        _: &mut Scratch,
+        _: &mut Workspace,
     ) -> Option<Self::Answer> {
         self.cast(pair, |_, _, _| None)
     }
@@ -70,7 +70,7 @@ impl Cast<'_> {
     fn cast<B: Support>(
         &self,
         pair: &Pair<'_, B>,
-        overlap: impl FnOnce(&Cso<'_, Hull, B>, DVec3, &Seen<'_>) -> Option<Option<ShapeCastHit>>,
+        overlap: impl FnOnce(&Cso<'_, Hull, B>, DVec3, &KernelFrame<'_>) -> Option<Option<ShapeCastHit>>,
     ) -> Option<Option<ShapeCastHit>> {
         let moves = self.velocity.is_finite() && self.velocity != Vector::ZERO;
         if !(moves && RelativePose::is_valid(self.pos12)) {
@@ -78,7 +78,7 @@ impl Cast<'_> {
         }
         let pose = pair.pose(self.pos12);
         let cso = pair.cso(&pose);
-        let seen = Seen::new(pair, &pose);
+        let frame = KernelFrame::new(pair, &pose);
         // That of the other shape as the hull sees it.
         let velocity = self.velocity.as_dvec3();
         let velocity = if pair.swapped {
@@ -90,15 +90,15 @@ impl Cast<'_> {
             &cso,
             velocity,
             self.options.max_time_of_impact.into(),
-            pair.between_cores(self.target_distance(), cso.size()),
+            pair.core_distance(self.target_distance(), cso.size()),
             &mut Cost::default(),
         );
         match impact {
             RayCast::Miss => Some(None),
-            RayCast::Hit(impact) => Some(Some(hit_at(&impact, velocity, &seen))),
+            RayCast::Hit(impact) => Some(Some(hit_at(&impact, velocity, &frame))),
             // Also false for NaN.
             RayCast::Overlap if self.options.max_time_of_impact >= 0.0 => {
-                overlap(&cso, velocity, &seen)
+                overlap(&cso, velocity, &frame)
             }
             RayCast::Overlap => Some(None),
         }
@@ -115,24 +115,24 @@ impl Cast<'_> {
         &self,
         cso: &Cso<'_, A, B>,
         velocity: DVec3,
-        seen: &Seen<'_>,
-        scratch: &mut Scratch,
+        frame: &KernelFrame<'_>,
+        workspace: &mut Workspace,
     ) -> Option<Option<ShapeCastHit>> {
         let mut query = Query {
             cso,
             max_distance: f64::INFINITY,
-            shells: None,
-            scratch: &mut scratch.epa,
+            polytope_cache: None,
+            scratch: &mut workspace.epa,
             cost: &mut Cost::default(),
         };
-        let Answer::Near(near) = query.run(&Memory::None)?.0 else {
+        let Answer::Near(near) = query.run(&PairMemory::None)?.0 else {
             return Some(None);
         };
         let departs = near.normal.dot(velocity) >= -GRAZING * velocity.length();
         if departs && !self.options.stop_at_penetration {
             return Some(None);
         }
-        let near = Near::of_proximity(&near, seen);
+        let near = CallerProximity::of_proximity(&near, frame);
         let slack = RAY_TOUCHING * cso.size();
         let status = if near.signed_distance < f64::from(self.target_distance()) - slack {
             ShapeCastStatus::PenetratingOrWithinTargetDist
@@ -143,13 +143,13 @@ impl Cast<'_> {
     }
 }
 
-fn hit_at(impact: &Impact, velocity: DVec3, seen: &Seen<'_>) -> ShapeCastHit {
+fn hit_at(impact: &Impact, velocity: DVec3, frame: &KernelFrame<'_>) -> ShapeCastHit {
     let way = velocity * impact.time;
-    let near = seen.near(impact.normal, [impact.on_1, impact.on_2 - way], 0.0);
+    let near = frame.near(impact.normal, [impact.on_1, impact.on_2 - way], 0.0);
     hit(impact.time, &near, ShapeCastStatus::Converged)
 }
 
-fn hit(time: f64, near: &Near, status: ShapeCastStatus) -> ShapeCastHit {
+fn hit(time: f64, near: &CallerProximity, status: ShapeCastStatus) -> ShapeCastHit {
     let [witness1, witness2] = near.points.map(|p| p.as_vec3());
     let [normal1, normal2] = near.normals.map(|n| n.as_vec3());
     ShapeCastHit {

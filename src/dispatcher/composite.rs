@@ -17,7 +17,7 @@ use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Shape, ShapeType};
 
 use super::mesh::{self, Triangles};
-use super::sub_pairs::Update;
+use super::sub_pairs::SubManifolds;
 use super::{IsaGjkDispatcher, compound, pair};
 
 /// Updates the manifolds of a pair in which a shape has parts. `false` if none has.
@@ -99,7 +99,7 @@ pub(super) fn empty_workspace() -> ContactManifoldsWorkspace {
 
 /// Leaves the one manifold that a pair of convex shapes has. If a shape had parts until now, the
 /// manifolds of its parts are still there, and rapier must notice that they go.
-pub(super) fn keep_one<M: Default + Clone, C: Default + Copy>(
+pub(super) fn reset_to_single<M: Default + Clone, C: Default + Copy>(
     manifolds: &mut Vec<ContactManifold<M, C>>,
     workspace: &mut Option<ContactManifoldsWorkspace>,
 ) {
@@ -137,7 +137,8 @@ where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
 {
-    let begin = |manifolds, workspace| Update::begin(dispatcher, prediction, manifolds, workspace);
+    let begin =
+        |manifolds, workspace| SubManifolds::new(dispatcher, prediction, manifolds, workspace);
     if let [Some(c1), Some(c2)] = [s1.as_compound(), s2.as_compound()] {
         compound::compounds(begin(manifolds, workspace), pos12, [c1, c2]);
         return true;
@@ -146,15 +147,15 @@ where
         if let Some(compound) = first.as_compound()
             && second.is_convex()
         {
-            let update = begin(manifolds, workspace);
-            compound::compound_and_convex(update, pos12, compound, second, swapped);
+            let sub_manifolds = begin(manifolds, workspace);
+            compound::compound_and_convex(sub_manifolds, pos12, compound, second, swapped);
             return true;
         }
         if let Some(triangles) = Triangles::of(first)
             && pair::is_hull(second)
         {
-            let update = begin(manifolds, workspace);
-            mesh::triangles_and_hull(update, pos12, triangles, second, swapped);
+            let sub_manifolds = begin(manifolds, workspace);
+            mesh::triangles_and_hull(sub_manifolds, pos12, triangles, second, swapped);
             return true;
         }
     }

@@ -10,15 +10,18 @@ use parry3d::shape::{Compound, Shape};
 
 use super::constraints::Constraints;
 use super::hulls::LastProved;
-use super::pair::Side;
-use super::sub_pairs::{Part, Update};
+use super::pair::Operand;
+use super::sub_pairs::{SubManifolds, SubShape};
 
 /// Of a compound with more parts than this, some prove their hulls more than once.
 const PROOFS: usize = 8;
 
 /// Two compounds.
-pub(super) fn compounds<M, C>(mut update: Update<'_, M, C>, pos12: &Pose, [c1, c2]: [&Compound; 2])
-where
+pub(super) fn compounds<M, C>(
+    mut sub_manifolds: SubManifolds<'_, M, C>,
+    pos12: &Pose,
+    [c1, c2]: [&Compound; 2],
+) where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
 {
@@ -27,10 +30,10 @@ where
     let whole_2 = c2
         .local_aabb()
         .transform_by(pos12)
-        .loosened(update.prediction);
+        .loosened(sub_manifolds.prediction);
     for i in c1.bvh().intersect_aabb(&whole_2) {
         let mut part_1 = part(c1, i, LastProved::default());
-        let near_1 = c1.aabbs()[i as usize].loosened(update.prediction);
+        let near_1 = c1.aabbs()[i as usize].loosened(sub_manifolds.prediction);
         let pos_part1_2 = c1.shapes()[i as usize].0.inv_mul(pos12);
         for k in c2.bvh().intersect_aabb(&near_1.transform_by(&pos21)) {
             // Boxes around turned boxes are large: the other way round many are apart.
@@ -40,16 +43,16 @@ where
             let proved = &mut proved_2[k as usize % PROOFS];
             let mut part_2 = part(c2, k, *proved);
             let pos12 = pos_part1_2 * c2.shapes()[k as usize].0;
-            update.parts(&pos12, &mut part_1, &mut part_2);
-            *proved = part_2.side.find;
+            sub_manifolds.update_pair(&pos12, &mut part_1, &mut part_2);
+            *proved = part_2.operand.find;
         }
     }
-    update.end();
+    sub_manifolds.finish();
 }
 
 /// A compound and a convex shape; the convex one is the first if `swapped`.
 pub(super) fn compound_and_convex<M, C>(
-    mut update: Update<'_, M, C>,
+    mut sub_manifolds: SubManifolds<'_, M, C>,
     pos12: &Pose,
     compound: &Compound,
     convex: &dyn Shape,
@@ -59,30 +62,32 @@ pub(super) fn compound_and_convex<M, C>(
     C: Default + Copy + Send + Sync,
 {
     let place = if swapped { pos12.inverse() } else { *pos12 };
-    let whole = convex.compute_aabb(&place).loosened(update.prediction);
-    let mut whole_part = Part::whole(convex);
+    let whole = convex
+        .compute_aabb(&place)
+        .loosened(sub_manifolds.prediction);
+    let mut whole_part = SubShape::whole(convex);
     for i in compound.bvh().intersect_aabb(&whole) {
         let mut part = part(compound, i, LastProved::default());
         let pos = &compound.shapes()[i as usize].0;
         if swapped {
-            update.parts(&(pos12 * pos), &mut whole_part, &mut part);
+            sub_manifolds.update_pair(&(pos12 * pos), &mut whole_part, &mut part);
         } else {
-            update.parts(&pos.inv_mul(pos12), &mut part, &mut whole_part);
+            sub_manifolds.update_pair(&pos.inv_mul(pos12), &mut part, &mut whole_part);
         }
     }
-    update.end();
+    sub_manifolds.finish();
 }
 
 fn box_in(compound: &Compound, part: u32, pose: &Pose) -> Aabb {
     compound.aabbs()[part as usize].transform_by(pose)
 }
 
-fn part<'a>(compound: &'a Compound, id: u32, proved: LastProved<'a>) -> Part<'a> {
+fn part<'a>(compound: &'a Compound, id: u32, proved: LastProved<'a>) -> SubShape<'a> {
     let (pos, shape) = &compound.shapes()[id as usize];
     let constraints = compound.part_normal_constraints(id);
-    Part {
+    SubShape {
         id,
-        side: Side::new(&**shape, proved),
+        operand: Operand::new(&**shape, proved),
         pos: Some(*pos),
         constraints: constraints.map_or(Constraints::None, Constraints::OfPart),
     }

@@ -115,7 +115,7 @@ fn outermost<A: Support, B: Support>(
     let distances = candidates.map(|normals| {
         let [normal, _] = cache::ordered(normals, swapped);
         let normal = normal.as_dvec3();
-        let extreme = cso.support(normal, cso.start(normal), &mut Cost::default());
+        let extreme = cso.support(normal, cso.start_vertices(normal), &mut Cost::default());
         (normals, -extreme.w.dot(normal))
     });
     distances.max_by(|(_, a), (_, b)| a.total_cmp(b))

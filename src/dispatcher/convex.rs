@@ -11,14 +11,14 @@ use super::constraints::{self, Constraints};
 use super::half_space;
 use super::kept::{self, Present};
 use super::others::HalfSpace;
-use super::pair::{Pair, PairVisitor, Scratch};
+use super::pair::{Pair, PairVisitor, Workspace};
 use super::points::write_points;
 use super::scaled::Scale;
-use crate::both::both;
+use crate::both::map_pair;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch, Contacts};
 use crate::pose::RelativePose;
-use crate::query::{self, Answer, Memory, Proximity, Query, Verdict};
+use crate::query::{self, Answer, PairMemory, Proximity, Query, Verdict};
 use crate::stats::{Cost, SharedStats, Stage};
 use crate::support::{Cso, Polytope, Support};
 use crate::tolerance::UNCORRECTED;
@@ -42,57 +42,57 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
 
     // In a call the pair would go through memory, which small queries notice.
     #[inline(always)]
-    fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<()> {
+    fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, workspace: &mut Workspace) -> Option<()> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
         }
         let pose = pair.pose(self.pos12);
         let cso = pair.cso(&pose);
-        let max_distance = pair.between_cores(self.prediction, cso.size());
+        let max_distance = pair.core_distance(self.prediction, cso.size());
         let frame = AxisFrame::of(&cso);
         let mut cost = Cost::default();
         // Half of the pairs that are apart, or more, end here: before anything else is done for them.
-        if cso.has_balls_apart(max_distance) {
-            self.stats.record(Stage::Balls, &cost);
+        if cso.are_spheres_apart(max_distance) {
+            self.stats.record(Stage::BoundingSpheres, &cost);
             cache::forget(self.manifold);
             return Some(());
         }
         let mut query = Query {
             cso: &cso,
             max_distance,
-            shells: Some((&mut scratch.shells, key_of(self.manifold))),
-            scratch: &mut scratch.epa,
+            polytope_cache: Some((&mut workspace.polytope_cache, key_of(self.manifold))),
+            scratch: &mut workspace.epa,
             cost: &mut cost,
         };
         // Stage by stage: copying an answer stalls on store forwarding.
         let answer = match cache::read(self.manifold, pair.swapped, frame) {
-            Memory::None => query.begin(),
-            Memory::Axis(axis, ids) => match query.test_axis(axis, ids) {
+            PairMemory::None => query.start_from_centers(),
+            PairMemory::Axis(axis, ids) => match query.test_axis(axis, ids) {
                 Ok(apart) => {
                     self.stats.record(Stage::Axis, &cost);
-                    cache::write_axis(self.manifold, &apart, frame);
+                    cache::set_axis(self.manifold, &apart, frame);
                     return Some(());
                 }
-                Err(vertex) => query.turn_axis(axis, vertex, query::WARM),
+                Err(vertex) => query.start_from_tilted_axis(axis, vertex, query::WARM),
             },
-            Memory::Contact(normal, features) => {
+            PairMemory::Contact(normal, features) => {
                 let verdict = query.certify(features);
                 if let Verdict::Certified(near) = &verdict {
                     let is_kept =
-                        self.update_contacts(pair, &cso, near, max_distance, &mut scratch.clip);
+                        self.update_contacts(pair, &cso, near, max_distance, &mut workspace.clip);
                     let stage = if is_kept { Stage::Kept } else { Stage::Feature };
                     self.stats.record(stage, &cost);
                     return Some(());
                 }
-                query.follow_contact(normal, features, &verdict)
+                query.start_from_features(normal, features, &verdict)
             }
         };
         let (answer, stage) = answer.as_ref()?;
         self.stats.record(*stage, &cost);
         match answer {
-            Answer::Apart(apart) => cache::write_axis(self.manifold, apart, frame),
+            Answer::Separated(apart) => cache::set_axis(self.manifold, apart, frame),
             Answer::Near(near) => {
-                self.update_contacts(pair, &cso, near, max_distance, &mut scratch.clip);
+                self.update_contacts(pair, &cso, near, max_distance, &mut workspace.clip);
             }
         }
         Some(())
@@ -101,16 +101,16 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
     fn visit_half_space(
         &mut self,
         pair: &Pair<'_, HalfSpace>,
-        scratch: &mut Scratch,
+        workspace: &mut Workspace,
     ) -> Option<()> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
         }
         let pose = pair.pose(self.pos12);
-        let max_distance = pair.between_cores(self.prediction, pair.hull.radius());
+        let max_distance = pair.core_distance(self.prediction, pair.hull.radius());
         let mut cost = Cost::default();
-        if half_space::has_ball_apart(pair, &pose, max_distance) {
-            self.stats.record(Stage::Balls, &cost);
+        if half_space::is_sphere_apart(pair, &pose, max_distance) {
+            self.stats.record(Stage::BoundingSpheres, &cost);
             cache::forget(self.manifold);
             return Some(());
         }
@@ -118,7 +118,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         let near = half_space::deepest(pair, &pose, &memory, &mut cost);
         if near.signed_distance > max_distance {
             self.stats.record(Stage::Axis, &cost);
-            cache::write_axis(
+            cache::set_axis(
                 self.manifold,
                 &half_space::axis(pair, &near),
                 AxisFrame::First,
@@ -132,7 +132,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                 &pose,
                 &near,
                 max_distance,
-                &mut scratch.clip,
+                &mut workspace.clip,
             );
             self.write(pair, rounded(&near, &pose, pair.swapped), &contacts);
         }
@@ -143,7 +143,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         &mut self,
         pair: &Pair<'_, B>,
         features: &dyn PolygonalFeatureMap,
-        scratch: &mut Scratch,
+        workspace: &mut Workspace,
     ) -> Option<()> {
         if !RelativePose::is_valid(self.pos12) {
             return None;
@@ -154,19 +154,19 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             let mut cost = Cost::default();
             let apart = Query {
                 cso: &cso,
-                max_distance: pair.between_cores(self.prediction, cso.size()),
-                shells: None,
-                scratch: &mut scratch.epa,
+                max_distance: pair.core_distance(self.prediction, cso.size()),
+                polytope_cache: None,
+                scratch: &mut workspace.epa,
                 cost: &mut cost,
             }
             .prove_apart(&cache::read(self.manifold, pair.swapped, AxisFrame::First));
             if let Some((apart, stage)) = apart {
                 self.stats.record(stage, &cost);
-                cache::write_axis(self.manifold, &apart, AxisFrame::First);
+                cache::set_axis(self.manifold, &apart, AxisFrame::First);
                 return Some(());
             }
         }
-        self.leave_to_parry(pair, features);
+        self.update_by_parry(pair, features);
         Some(())
     }
 }
@@ -186,38 +186,47 @@ fn normals(near: &Proximity, pose: &RelativePose) -> [DVec3; 2] {
 /// The same in the manifold's order and precision.
 #[inline(always)]
 fn rounded(near: &Proximity, pose: &RelativePose, swapped: bool) -> [Vec3; 2] {
-    let normals = both(normals(near, pose), |normal| normal.as_vec3());
+    let normals = map_pair(normals(near, pose), |normal| normal.as_vec3());
     cache::ordered(normals, swapped)
 }
 
 impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
     /// To the routine for shapes with features, which searches with extreme vertices of the hull: ours
     /// climbs to them.
-    fn leave_to_parry<B: Support>(
+    fn update_by_parry<B: Support>(
         &mut self,
         pair: &Pair<'_, B>,
         features: &dyn PolygonalFeatureMap,
     ) {
         let rotation = self.pos12.rotation;
-        cache::turn_axis(self.manifold, pair.swapped, rotation);
+        cache::convert_parry_axis(self.manifold, pair.swapped, rotation);
         let scale = Scale::of(pair);
         let shapes = [scale.shape(pair.hull), scale.shape(features)];
         let [shape_1, shape_2] = cache::ordered(shapes, pair.swapped);
-        let borders = pair.borders.map(|border| scale.length(border as Real));
-        let [border_1, border_2] = cache::ordered(borders, pair.swapped);
+        let border_radii = pair
+            .border_radii
+            .map(|border_radius| scale.length(border_radius as Real));
+        let [border_radius_1, border_radius_2] = cache::ordered(border_radii, pair.swapped);
         let (pos12, prediction) = (scale.pose(self.pos12), scale.length(self.prediction));
         let [c1, c2] = self.constraints;
         c1.with(|c1| {
             c2.with(|c2| {
                 scale.with_manifold(self.manifold, |manifold| {
                     contact_manifold_pfm_pfm(
-                        &pos12, &shape_1, border_1, c1, &shape_2, border_2, c2, prediction,
+                        &pos12,
+                        &shape_1,
+                        border_radius_1,
+                        c1,
+                        &shape_2,
+                        border_radius_2,
+                        c2,
+                        prediction,
                         manifold,
                     );
                 });
             });
         });
-        cache::turn_axis(self.manifold, pair.swapped, rotation.inverse());
+        cache::convert_parry_axis(self.manifold, pair.swapped, rotation.inverse());
     }
 
     /// Leaves the contacts where they are, if that is right, and returns whether it is. Otherwise it
@@ -234,7 +243,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         let normals = rounded(near, cso.pose, pair.swapped);
         let Some(constrained) = self.constrained(cso, pair.swapped, max_distance, normals) else {
             // Discarded: there is no contact, but there is a place to start from.
-            cache::write_start(self.manifold, near, cso);
+            cache::set_hint(self.manifold, near, cso);
             return false;
         };
         // The query's depth says nothing about contacts along a corrected normal.
@@ -242,7 +251,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
             self.write_corrected(pair, cso, (near, constrained), max_distance, scratch);
             return false;
         }
-        let is_kept = self.keep_contacts(pair, cso.pose, near, cso.smaller_radius());
+        let is_kept = self.keep_contacts(pair, cso.pose, near, cso.min_radius());
         if !is_kept {
             self.write_contacts(pair, cso, near, max_distance, scratch);
         }
@@ -261,7 +270,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         let present = Present {
             pose,
             normals: normals(near, pose),
-            signed_distance: near.signed_distance - (pair.borders[0] + pair.borders[1]),
+            signed_distance: near.signed_distance - (pair.border_radii[0] + pair.border_radii[1]),
             radius,
             swapped: pair.swapped,
         };
@@ -298,14 +307,14 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
             None if near.signed_distance < 0.0 => {
                 self.write_contacts(pair, cso, near, max_distance, scratch);
             }
-            None => cache::write_start(self.manifold, near, cso),
+            None => cache::set_hint(self.manifold, near, cso),
         }
     }
 
     #[inline(always)]
     fn write<B>(&mut self, pair: &Pair<'_, B>, normals: [Vec3; 2], contacts: &Contacts) {
         [self.manifold.local_n1, self.manifold.local_n2] = normals;
-        write_points(self.manifold, contacts, pair.borders, pair.swapped);
+        write_points(self.manifold, contacts, pair.border_radii, pair.swapped);
     }
 
     /// The contact's normals as the constraints leave them, if they do.

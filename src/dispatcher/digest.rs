@@ -53,7 +53,7 @@ impl Digest {
     /// Whether it is that of these points.
     // In line it would hold up the comparison of small hulls.
     #[inline(never)]
-    pub fn is_of(&self, points: &[Vec3]) -> bool {
+    pub fn matches(&self, points: &[Vec3]) -> bool {
         let bytes: &[u8] = bytemuck::cast_slice(points);
         self.count == points.len()
             && bytes.first_chunk() == Some(&self.start)
@@ -166,7 +166,7 @@ mod tests {
         #[test]
         fn the_same_points_are_known_again(points in points(FEWEST..400)) {
             let Some(digest) = Digest::of(&points) else { return Ok(()) };
-            prop_assert!(digest.is_of(&points.clone()));
+            prop_assert!(digest.matches(&points.clone()));
         }
 
         /// That is certain, whatever the change.
@@ -181,7 +181,7 @@ mod tests {
             let mut changed = points.clone();
             changed[at..at + new.len()].copy_from_slice(&new);
             let bits = |points: &[Vec3]| bytemuck::cast_slice::<_, u32>(points).to_vec();
-            prop_assert_eq!(digest.is_of(&changed), bits(&changed) == bits(&points));
+            prop_assert_eq!(digest.matches(&changed), bits(&changed) == bits(&points));
         }
 
         /// What users do to hulls changes all of them, in regular ways.
@@ -207,7 +207,7 @@ mod tests {
                 swapped,
             ];
             for changed in changes.iter().filter(|changed| **changed != points) {
-                prop_assert!(!digest.is_of(changed));
+                prop_assert!(!digest.matches(changed));
             }
         }
 
@@ -216,9 +216,9 @@ mod tests {
             let Some(digest) = Digest::of(&points) else { return Ok(()) };
             let mut longer = points.clone();
             longer.extend(vec![Vec3::ZERO; more]);
-            prop_assert!(!digest.is_of(&longer));
-            prop_assert!(!digest.is_of(&points[1..]));
-            prop_assert!(!digest.is_of(&points[..points.len() - 1]));
+            prop_assert!(!digest.matches(&longer));
+            prop_assert!(!digest.matches(&points[1..]));
+            prop_assert!(!digest.matches(&points[..points.len() - 1]));
         }
     }
 }

@@ -4,14 +4,18 @@ use super::others::HalfSpace;
 use super::pair::Pair;
 use crate::gjk::SeparatingAxis;
 use crate::pose::RelativePose;
-use crate::query::{Feature, Memory, Proximity, vertex_of};
+use crate::query::{Feature, PairMemory, Proximity, vertex_of};
 use crate::stats::Cost;
 use crate::support::Support;
 
-/// Whether the ball around a hull is above a half-space by more than `beyond`. All hulls of a world are
+/// Whether the bounding sphere of a hull is above a half-space by more than `beyond`. All hulls of a world are
 /// in a pair with its ground, and most of them end here.
 #[inline(always)]
-pub(super) fn has_ball_apart(pair: &Pair<'_, HalfSpace>, pose: &RelativePose, beyond: f64) -> bool {
+pub(super) fn is_sphere_apart(
+    pair: &Pair<'_, HalfSpace>,
+    pose: &RelativePose,
+    beyond: f64,
+) -> bool {
     let center = pose.point_to_2(pair.hull.center());
     pair.other.normal.dot(center) - pair.hull.radius() > beyond
 }
@@ -21,16 +25,16 @@ pub(super) fn has_ball_apart(pair: &Pair<'_, HalfSpace>, pose: &RelativePose, be
 pub(super) fn deepest(
     pair: &Pair<'_, HalfSpace>,
     pose: &RelativePose,
-    memory: &Memory,
+    memory: &PairMemory,
     cost: &mut Cost,
 ) -> Proximity {
     let (hull, normal_2) = (pair.hull, pair.other.normal);
     let normal = -pose.direction_to_1(normal_2);
     let start = match *memory {
-        Memory::Axis(_, [vertex, _]) | Memory::Contact(_, [Feature::Vertex(vertex), _]) => {
-            hull.valid_start(vertex)
+        PairMemory::Axis(_, [vertex, _]) | PairMemory::Contact(_, [Feature::Vertex(vertex), _]) => {
+            hull.clamp_vertex(vertex)
         }
-        _ => hull.start(normal),
+        _ => hull.start_vertex(normal),
     };
     let (on_1, vertex) = hull.support(normal, start, cost);
     let signed_distance = normal_2.dot(pose.point_to_2(on_1));

@@ -6,7 +6,7 @@
 //! 130 ns for 1,000), and the edges that these points do not determine, which are those across flat sides.
 //! Equal polyhedra have an equal hull, whatever the allocator or the user did in
 //! between; the table is a pure function of the shapes, and no answer depends on its history. Where the user promises that no shape changes for
-//! a while, the first use in that span compares for all of them.
+//! a while, the first use in that epoch compares for all of them.
 //!
 //! Each thread has a table of its own, which needs no lock; the hulls themselves are shared. Nothing
 //! says that a polyhedron is gone: its hull goes when it was not used for long ([`Aging`]).
@@ -18,8 +18,8 @@ use parry3d::shape::ConvexPolyhedron;
 
 use super::aging::{Aging, KEEP_BYTES};
 use super::int_hash::IntMap;
-use super::preparation::Preparation;
-use super::unchanged::Span;
+use super::preparation::PreparedHull;
+use super::unchanged::Epoch;
 use crate::hull::Hull;
 
 /// Room is made after this many pairs, and whenever this share of what may stay has been prepared.
@@ -27,10 +27,10 @@ const LOOK_AFTER: u32 = 4096;
 const LOOK_AFTER_BYTES: usize = KEEP_BYTES as usize / 4;
 
 /// A thread's prepared hulls.
-pub(super) struct HullTable {
+pub(super) struct HullCache {
     entries: IntMap<Address, usize>,
     /// The last address and slot met of each class of addresses, before the map is asked.
-    recent: Recent,
+    recent: DirectMapped,
     slots: Vec<Slot>,
     bytes: usize,
     /// How many bytes there may be, and pairs until then, when room is made.
@@ -39,22 +39,22 @@ pub(super) struct HullTable {
     /// Which no other table has, and this one neither after references have ended.
     state: u64,
     aging: Aging,
-    /// The span that is under way.
-    span: Option<Span>,
+    /// The epoch that is under way.
+    epoch: Option<Epoch>,
 }
 
-impl Default for HullTable {
+impl Default for HullCache {
     fn default() -> Self {
         Self {
             entries: IntMap::default(),
-            recent: Recent::default(),
+            recent: DirectMapped::default(),
             slots: Vec::new(),
             bytes: 0,
             look_at: KEEP_BYTES as usize + LOOK_AFTER_BYTES,
             look_after: LOOK_AFTER,
             state: new_state(),
             aging: Aging::default(),
-            span: None,
+            epoch: None,
         }
     }
 }
@@ -69,34 +69,34 @@ type Address = usize;
 
 struct Slot {
     address: Address,
-    prepared: Arc<Preparation>,
+    prepared: Arc<PreparedHull>,
     /// When it was used last, by the table's `Aging`.
     used: u64,
     /// In which it was proved last.
-    span: Option<Span>,
+    epoch: Option<Epoch>,
 }
 
 impl Slot {
     fn new(address: Address, polyhedron: &ConvexPolyhedron) -> Self {
         Self {
             address,
-            prepared: Preparation::of(polyhedron),
+            prepared: PreparedHull::get_or_build(polyhedron),
             used: 0,
-            span: None,
+            epoch: None,
         }
     }
 
-    /// Whether it is of the polyhedron at its address: it was proved in the span that is under way, or is now.
+    /// Whether it is of the polyhedron at its address: it was proved in the epoch that is under way, or is now.
     #[inline(always)]
-    fn is_of(&self, polyhedron: &ConvexPolyhedron, span: Option<Span>) -> bool {
-        (span.is_some() && self.span == span) || self.prepared.is_of(polyhedron)
+    fn matches(&self, polyhedron: &ConvexPolyhedron, epoch: Option<Epoch>) -> bool {
+        (epoch.is_some() && self.epoch == epoch) || self.prepared.matches(polyhedron)
     }
 
     /// Marks the slot as proved again and returns a reference to its hull, if it has one.
     #[inline(always)]
-    fn proved(&mut self, place: usize, now: u64, span: Option<Span>) -> Option<HullRef> {
+    fn proved(&mut self, place: usize, now: u64, epoch: Option<Epoch>) -> Option<HullRef> {
         self.used = now;
-        self.span = span;
+        self.epoch = epoch;
         self.prepared.hull().is_some().then_some(HullRef(place))
     }
 
@@ -118,7 +118,7 @@ pub(super) struct HullRef(usize);
 /// Finds the hulls of polyhedra in the table.
 pub(super) trait Find<'a> {
     /// The hull of a polyhedron; `None` if it has none.
-    fn find(&mut self, table: &mut HullTable, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef>;
+    fn find(&mut self, cache: &mut HullCache, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef>;
 }
 
 /// Each with its proof.
@@ -126,15 +126,15 @@ pub(super) struct EachProved;
 
 impl<'a> Find<'a> for EachProved {
     #[inline(always)]
-    fn find(&mut self, table: &mut HullTable, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
-        table.find(polyhedron)
+    fn find(&mut self, cache: &mut HullCache, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
+        cache.find(polyhedron)
     }
 }
 
 impl<'a, F: Find<'a>> Find<'a> for &mut F {
     #[inline]
-    fn find(&mut self, table: &mut HullTable, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
-        (**self).find(table, polyhedron)
+    fn find(&mut self, cache: &mut HullCache, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
+        (**self).find(cache, polyhedron)
     }
 }
 
@@ -151,28 +151,28 @@ struct Proof<'a> {
 
 impl<'a> Find<'a> for LastProved<'a> {
     #[inline]
-    fn find(&mut self, table: &mut HullTable, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
+    fn find(&mut self, cache: &mut HullCache, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
         if let Some(proof) = self.0
             && std::ptr::eq(proof.polyhedron, polyhedron)
-            && proof.state == table.state
+            && proof.state == cache.state
         {
             return Some(proof.place);
         }
-        let place = table.find(polyhedron)?;
+        let place = cache.find(polyhedron)?;
         *self = Self(Some(Proof {
             polyhedron,
             place,
-            state: table.state,
+            state: cache.state,
         }));
         Some(place)
     }
 }
 
-impl HullTable {
-    /// Before hulls are looked for, which are unchanged during `span`. References end here.
+impl HullCache {
+    /// Before hulls are looked for, which are unchanged during `epoch`. References end here.
     #[inline(always)]
-    pub fn begin(&mut self, span: Option<Span>) {
-        self.span = span;
+    pub fn begin(&mut self, epoch: Option<Epoch>) {
+        self.epoch = epoch;
         self.look_after -= 1;
         if self.look_after == 0 {
             self.look_after();
@@ -186,12 +186,12 @@ impl HullTable {
         self.look_after = LOOK_AFTER;
         self.aging.pass();
         if self.bytes > KEEP_BYTES as usize {
-            self.make_room();
+            self.evict();
             self.look_at = self.bytes.max(KEEP_BYTES as usize) + LOOK_AFTER_BYTES;
         }
     }
 
-    fn make_room(&mut self) {
+    fn evict(&mut self) {
         let is_old = self.aging.limit();
         let before = self.slots.len();
         let aging = &mut self.aging;
@@ -207,12 +207,12 @@ impl HullTable {
         }
         self.state = new_state();
         self.slots.shrink_to(2 * self.slots.len());
-        self.recent = Recent::default();
+        self.recent = DirectMapped::default();
         self.entries = (self.slots.iter().enumerate())
             .map(|(i, slot)| (slot.address, i))
             .collect();
         self.bytes = self.slots.iter().map(Slot::bytes).sum();
-        Preparation::forget_unused();
+        PreparedHull::forget_unused();
     }
 
     /// The hull of a polyhedron, built if it is new; `None` if it has none.
@@ -222,9 +222,9 @@ impl HullTable {
         let (known, place) = *self.recent.class(address);
         if known == address
             && let Some(slot) = self.slots.get_mut(place)
-            && slot.is_of(polyhedron, self.span)
+            && slot.matches(polyhedron, self.epoch)
         {
-            return slot.proved(place, self.aging.now(), self.span);
+            return slot.proved(place, self.aging.now(), self.epoch);
         }
         self.find_among_all(polyhedron)
     }
@@ -233,11 +233,11 @@ impl HullTable {
     fn find_among_all(&mut self, polyhedron: &ConvexPolyhedron) -> Option<HullRef> {
         let address = polyhedron.points().as_ptr() as Address;
         let place = match self.entries.get(&address).copied() {
-            Some(i) if self.slots[i].is_of(polyhedron, self.span) => i,
+            Some(i) if self.slots[i].matches(polyhedron, self.epoch) => i,
             known => self.insert(address, polyhedron, known),
         };
         *self.recent.class(address) = (address, place);
-        self.slots[place].proved(place, self.aging.now(), self.span)
+        self.slots[place].proved(place, self.aging.now(), self.epoch)
     }
 
     #[cold]
@@ -272,19 +272,19 @@ impl HullTable {
 }
 
 /// A direct-mapped cache: one pair of address and slot for each class of addresses.
-struct Recent([(Address, usize); CLASSES]);
+struct DirectMapped([(Address, usize); CLASSES]);
 
 /// Enough for the different hulls of most scenes, in a few kilobytes.
 const CLASSES: usize = 256;
 
-impl Default for Recent {
+impl Default for DirectMapped {
     fn default() -> Self {
         // No points are at address 0.
         Self([(0, 0); CLASSES])
     }
 }
 
-impl Recent {
+impl DirectMapped {
     #[inline(always)]
     fn class(&mut self, address: Address) -> &mut (Address, usize) {
         &mut self.0[(address >> 4 ^ address >> 12) % CLASSES]

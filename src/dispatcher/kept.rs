@@ -15,8 +15,8 @@ use glam::{DVec3, Vec3};
 use parry3d::query::{ContactManifold, TrackedContact};
 
 use super::cache;
-use crate::both::both;
-use crate::fours::Vectors;
+use crate::both::map_pair;
+use crate::fours::DVec3x4;
 use crate::manifold::MAX_POINTS;
 use crate::pose::RelativePose;
 use crate::tolerance::{KEPT_ANGLE_COS, KEPT_DEPTH, KEPT_DRIFT};
@@ -68,7 +68,7 @@ pub(super) fn keep_contacts<M, C>(
         point.dist = distance as f32;
     }
     manifold.points[deepest].dist = present.signed_distance as f32;
-    let normals = both(present.normals, |normal| normal.as_vec3());
+    let normals = map_pair(present.normals, |normal| normal.as_vec3());
     [manifold.local_n1, manifold.local_n2] = cache::ordered(normals, present.swapped);
     true
 }
@@ -90,7 +90,7 @@ impl Present<'_> {
         let last = contacts.len() - 1;
         let lanes = [0, 1, 2, 3].map(|lane: usize| &contacts[lane.min(last)]);
         let points = |of: fn(&TrackedContact<C>) -> Vec3| {
-            Vectors::of(lanes, |contact| of(contact).as_dvec3())
+            DVec3x4::gather(lanes, |contact| of(contact).as_dvec3())
         };
         let (on_1, on_2) = if self.swapped {
             (points(|c| c.local_p2), points(|c| c.local_p1))

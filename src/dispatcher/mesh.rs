@@ -13,8 +13,8 @@ use parry3d::shape::{
 
 use super::constraints::Constraints;
 use super::hulls::LastProved;
-use super::pair::Side;
-use super::sub_pairs::{Part, Update};
+use super::pair::Operand;
+use super::sub_pairs::{SubManifolds, SubShape};
 
 /// A shape made of triangles.
 #[derive(Clone, Copy)]
@@ -59,7 +59,7 @@ impl<'a> Triangles<'a> {
 
 /// A shape made of triangles and a hull; the hull is the first if `swapped`.
 pub(super) fn triangles_and_hull<M, C>(
-    mut update: Update<'_, M, C>,
+    mut sub_manifolds: SubManifolds<'_, M, C>,
     pos12: &Pose,
     triangles: Triangles<'_>,
     hull: &dyn Shape,
@@ -69,14 +69,14 @@ pub(super) fn triangles_and_hull<M, C>(
     C: Default + Copy + Send + Sync,
 {
     let place = if swapped { pos12.inverse() } else { *pos12 };
-    let near = hull.compute_aabb(&place).loosened(update.prediction);
-    let mut hull = Part::whole(hull);
+    let near = hull.compute_aabb(&place).loosened(sub_manifolds.prediction);
+    let mut hull = SubShape::whole(hull);
     let is_flagged = triangles.is_flagged();
     triangles.each_near(&near, |id, triangle| {
         let normals = || triangles.normals(id);
-        let mut part = Part {
+        let mut part = SubShape {
             id,
-            side: Side::new(triangle, LastProved::default()),
+            operand: Operand::new(triangle, LastProved::default()),
             pos: None,
             constraints: if is_flagged {
                 Constraints::OfTriangle(&normals)
@@ -85,10 +85,10 @@ pub(super) fn triangles_and_hull<M, C>(
             },
         };
         if swapped {
-            update.parts(pos12, &mut hull, &mut part);
+            sub_manifolds.update_pair(pos12, &mut hull, &mut part);
         } else {
-            update.parts(pos12, &mut part, &mut hull);
+            sub_manifolds.update_pair(pos12, &mut part, &mut hull);
         }
     });
-    update.end();
+    sub_manifolds.finish();
 }

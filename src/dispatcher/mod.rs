@@ -35,9 +35,9 @@ use parry3d::shape::Shape;
 use constraints::Constraints;
 use convex::UpdateManifold;
 use hulls::Find;
-use pair::Side;
-use parts::Mover;
-use unchanged::{Span, Unchanged};
+use pair::Operand;
+use parts::MovingShape;
+use unchanged::{Epoch, EpochSource};
 
 use crate::stats::{SharedStats, Stats};
 
@@ -49,7 +49,7 @@ use crate::stats::{SharedStats, Stats};
 #[derive(Clone, Debug, Default)]
 pub struct IsaGjkDispatcher {
     stats: SharedStats,
-    unchanged: Unchanged,
+    epochs: EpochSource,
 }
 
 impl IsaGjkDispatcher {
@@ -77,7 +77,7 @@ impl IsaGjkDispatcher {
     /// dispatcher.with_unchanged_shapes(|| world.step());
     /// ```
     pub fn with_unchanged_shapes<R>(&self, step: impl FnOnce() -> R) -> R {
-        self.unchanged.run(step)
+        self.epochs.run(step)
     }
 
     /// Drops what all dispatchers have prepared of plain hulls, and the memory that queries work in: in
@@ -107,7 +107,7 @@ impl IsaGjkDispatcher {
     }
 }
 
-const DEFAULT: DefaultQueryDispatcher = DefaultQueryDispatcher;
+const PARRY: DefaultQueryDispatcher = DefaultQueryDispatcher;
 
 impl QueryDispatcher for IsaGjkDispatcher {
     fn intersection_test(
@@ -121,7 +121,7 @@ impl QueryDispatcher for IsaGjkDispatcher {
         }
         match parts::intersection_test(self, pos12, g1, g2) {
             Some(intersection) => Ok(intersection),
-            None => DEFAULT.intersection_test(pos12, g1, g2),
+            None => PARRY.intersection_test(pos12, g1, g2),
         }
     }
 
@@ -136,7 +136,7 @@ impl QueryDispatcher for IsaGjkDispatcher {
         }
         match parts::distance(self, pos12, g1, g2) {
             Some(distance) => Ok(distance),
-            None => DEFAULT.distance(pos12, g1, g2),
+            None => PARRY.distance(pos12, g1, g2),
         }
     }
 
@@ -150,7 +150,7 @@ impl QueryDispatcher for IsaGjkDispatcher {
         let ours = scene::contact(pos12, g1, g2, prediction);
         match ours.or_else(|| parts::contact(self, pos12, g1, g2, prediction)) {
             Some(contact) => Ok(contact),
-            None => DEFAULT.contact(pos12, g1, g2, prediction),
+            None => PARRY.contact(pos12, g1, g2, prediction),
         }
     }
 
@@ -164,7 +164,7 @@ impl QueryDispatcher for IsaGjkDispatcher {
         let ours = scene::closest_points(pos12, g1, g2, max_dist);
         match ours.or_else(|| parts::closest_points(self, pos12, g1, g2, max_dist)) {
             Some(points) => Ok(points),
-            None => DEFAULT.closest_points(pos12, g1, g2, max_dist),
+            None => PARRY.closest_points(pos12, g1, g2, max_dist),
         }
     }
 
@@ -181,7 +181,7 @@ impl QueryDispatcher for IsaGjkDispatcher {
         }
         match parts::cast_shapes(self, pos12, local_vel12, g1, g2, options) {
             Some(hit) => hit,
-            None => DEFAULT.cast_shapes(pos12, local_vel12, g1, g2, options),
+            None => PARRY.cast_shapes(pos12, local_vel12, g1, g2, options),
         }
     }
 
@@ -195,7 +195,8 @@ impl QueryDispatcher for IsaGjkDispatcher {
         end_time: Real,
         stop_at_penetration: bool,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        let movers = [(motion1, g1), (motion2, g2)].map(|(motion, shape)| Mover { motion, shape });
+        let movers =
+            [(motion1, g1), (motion2, g2)].map(|(motion, shape)| MovingShape { motion, shape });
         parts::cast_shapes_nonlinear(self, movers, [start_time, end_time], stop_at_penetration)
             .ok_or(Unsupported)
     }
@@ -215,19 +216,19 @@ where
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
-        let (shapes, sides) = ([g1, g2], (Side::alone(g1), Side::alone(g2)));
-        let may_have_parts = sides.0.may_have_parts() || sides.1.may_have_parts();
-        if may_have_parts
+        let (shapes, operands) = ([g1, g2], (Operand::alone(g1), Operand::alone(g2)));
+        let may_be_composite = operands.0.may_be_composite() || operands.1.may_be_composite();
+        if may_be_composite
             && composite::contact_manifolds(self, pos12, shapes, prediction, manifolds, workspace)
         {
             return Ok(());
         }
-        composite::keep_one(manifolds, workspace);
-        let (constraints, span) = ([Constraints::None; 2], self.unchanged.span());
+        composite::reset_to_single(manifolds, workspace);
+        let (constraints, epoch) = ([Constraints::None; 2], self.epochs.epoch());
         self.update_manifold(
             pos12,
-            sides,
-            span,
+            operands,
+            epoch,
             constraints,
             prediction,
             &mut manifolds[0],
@@ -244,23 +245,23 @@ where
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported> {
-        let sides = (Side::alone(g1), Side::alone(g2));
+        let operands = (Operand::alone(g1), Operand::alone(g2));
         let constraints = [normal_constraints1, normal_constraints2].map(Constraints::given);
         // Whoever takes shapes apart may make parts that do not outlive their pair.
-        let span = None;
-        self.update_manifold(pos12, sides, span, constraints, prediction, manifold)
+        let epoch = None;
+        self.update_manifold(pos12, operands, epoch, constraints, prediction, manifold)
     }
 }
 
 impl IsaGjkDispatcher {
-    /// Brings the manifold of two convex shapes up to date, which are unchanged during `span`.
+    /// Brings the manifold of two convex shapes up to date, which are unchanged during `epoch`.
     // In a call the sides would go through memory, which pairs that are apart notice.
     #[inline(always)]
     fn update_manifold<'a, 'b, M, C>(
         &self,
         pos12: &Pose,
-        (side_1, side_2): (Side<'a, impl Find<'a>>, Side<'b, impl Find<'b>>),
-        span: Option<Span>,
+        (operand_1, operand_2): (Operand<'a, impl Find<'a>>, Operand<'b, impl Find<'b>>),
+        epoch: Option<Epoch>,
         constraints: [Constraints<'_>; 2],
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
@@ -269,7 +270,7 @@ impl IsaGjkDispatcher {
         M: Default + Clone + Send + Sync,
         C: Default + Copy + Send + Sync,
     {
-        let (g1, g2) = (side_1.shape, side_2.shape);
+        let (g1, g2) = (operand_1.shape, operand_2.shape);
         let update = UpdateManifold {
             pos12,
             prediction,
@@ -277,13 +278,13 @@ impl IsaGjkDispatcher {
             manifold,
             stats: &self.stats,
         };
-        if pair::visit_sides(side_1, side_2, span, update).is_some() {
+        if pair::visit_operands(operand_1, operand_2, epoch, update).is_some() {
             return Ok(());
         }
         let [c1, c2] = constraints;
         c1.with(|c1| {
             c2.with(|c2| {
-                DEFAULT.contact_manifold_convex_convex(pos12, g1, g2, c1, c2, prediction, manifold)
+                PARRY.contact_manifold_convex_convex(pos12, g1, g2, c1, c2, prediction, manifold)
             })
         })
     }

@@ -8,10 +8,10 @@ use parry3d::shape::{
     Segment as ParrySegment, Triangle,
 };
 
-use crate::pose::to_unit;
+use crate::pose::unit_scale;
 use crate::primitive::{Cone, CuboidPolytope, Cylinder, Segment, TrianglePolytope};
 use crate::support::Support;
-use crate::tolerance::{MIN_BOX_THICKNESS, THINNEST};
+use crate::tolerance::{MIN_BOX_THICKNESS, MIN_EXTENT};
 
 /// The half-space beneath the plane through its origin with this normal.
 pub(super) struct HalfSpace {
@@ -22,24 +22,24 @@ pub(super) fn half_space(half_space: &ParryHalfSpace) -> Option<HalfSpace> {
     let normal = half_space.normal.as_dvec3();
     let squared = normal.length_squared();
     (squared > 0.0 && squared.is_finite()).then(|| HalfSpace {
-        normal: normal * to_unit(squared),
+        normal: normal * unit_scale(squared),
     })
 }
 
 /// A shape of parry's with a curved surface.
-pub(super) trait Curved {
+pub(super) trait CurvedShape {
     /// As the kernels know it; `None` if it has no volume.
     fn kernel(&self) -> Option<impl Support>;
 }
 
-impl Curved for ParryCylinder {
+impl CurvedShape for ParryCylinder {
     fn kernel(&self) -> Option<impl Support> {
         let (half_height, radius) = (positive(self.half_height)?, positive(self.radius)?);
         Some(Cylinder::new(half_height, radius))
     }
 }
 
-impl Curved for ParryCone {
+impl CurvedShape for ParryCone {
     fn kernel(&self) -> Option<impl Support> {
         let (half_height, radius) = (positive(self.half_height)?, positive(self.radius)?);
         Some(Cone::new(half_height, radius))
@@ -51,7 +51,7 @@ impl Curved for ParryCone {
 pub(super) fn cuboid(cuboid: &Cuboid) -> Option<CuboidPolytope> {
     let half_extents = cuboid.half_extents.as_dvec3();
     let longest = DVec3::splat(half_extents.max_element());
-    let thin = half_extents.cmple(longest * THINNEST);
+    let thin = half_extents.cmple(longest * MIN_EXTENT);
     let with_thickness = half_extents.max(longest * MIN_BOX_THICKNESS);
     (thin.bitmask().count_ones() < 2).then(|| CuboidPolytope::new(with_thickness))
 }
@@ -62,10 +62,10 @@ pub(super) fn positive(length: Real) -> Option<f64> {
 }
 
 #[inline]
-pub(super) fn segment(segment: &ParrySegment, border: Real) -> Option<Segment> {
-    positive(segment.length() + border)?;
+pub(super) fn segment(segment: &ParrySegment, border_radius: Real) -> Option<Segment> {
+    positive(segment.length() + border_radius)?;
     let ends = [segment.a, segment.b].map(|p| p.as_dvec3());
-    Some(Segment::new(ends, border.into()))
+    Some(Segment::new(ends, border_radius.into()))
 }
 
 #[inline]

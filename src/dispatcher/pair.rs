@@ -8,24 +8,24 @@ use parry3d::shape::{
     ConvexPolyhedron, PolygonalFeatureMap, RoundConvexPolyhedron, Shape, ShapeType, TypedShape,
 };
 
-use super::hulls::{EachProved, Find, HullRef, HullTable};
-use super::others::{self, Curved, HalfSpace};
-use super::preparation::Preparation;
-use super::unchanged::Span;
-use crate::epa::{EpaScratch, Shells};
+use super::hulls::{EachProved, Find, HullCache, HullRef};
+use super::others::{self, CurvedShape, HalfSpace};
+use super::preparation::PreparedHull;
+use super::unchanged::Epoch;
+use crate::epa::{EpaScratch, PolytopeCache};
 use crate::hull::Hull;
 use crate::hull_shape::HullShape;
 use crate::manifold::ClipScratch;
 use crate::pose::RelativePose;
 use crate::primitive::Ball;
 use crate::support::{Cso, Polytope, Support};
-use crate::tolerance::TOUCHING;
+use crate::tolerance::MIN_DIRECTED_DISTANCE;
 
 /// What a thread keeps from query to query: prepared hulls, and memory to work in.
 #[derive(Default)]
-struct Workbench {
-    hulls: HullTable,
-    scratch: Scratch,
+struct ThreadWorkspace {
+    hulls: HullCache,
+    workspace: Workspace,
     /// How often all had been asked to trim when it was made.
     trims: u64,
 }
@@ -34,30 +34,30 @@ struct Workbench {
 static TRIMS: AtomicU64 = AtomicU64::new(0);
 
 thread_local! {
-    static WORKBENCH: Cell<Option<Box<Workbench>>> = const { Cell::new(None) };
+    static WORKSPACE: Cell<Option<Box<ThreadWorkspace>>> = const { Cell::new(None) };
 }
 
 /// Drops what threads keep: this one now, others before their next query.
 pub(super) fn trim() {
     TRIMS.fetch_add(1, Ordering::Relaxed);
-    Workbench::with(|_| ());
-    Preparation::forget_unused();
+    ThreadWorkspace::with(|_| ());
+    PreparedHull::forget_unused();
 }
 
-impl Workbench {
+impl ThreadWorkspace {
     /// Works on that of this thread, which is out of its place meanwhile: whoever asks within a query (a
     /// user's `NormalConstraints`), or while the thread ends, works on a new one.
     // perf: in a call the work would go through memory, which pairs that are apart notice.
     #[inline(always)]
     fn with<T>(work: impl FnOnce(&mut Self) -> T) -> T {
         let trims = TRIMS.load(Ordering::Relaxed);
-        let kept = WORKBENCH.try_with(Cell::take).ok().flatten();
-        let mut bench = match kept {
-            Some(bench) if bench.trims == trims => bench,
+        let kept = WORKSPACE.try_with(Cell::take).ok().flatten();
+        let mut thread = match kept {
+            Some(thread) if thread.trims == trims => thread,
             _ => Self::new(trims),
         };
-        let answer = work(&mut bench);
-        let _ = WORKBENCH.try_with(|place| place.set(Some(bench)));
+        let answer = work(&mut thread);
+        let _ = WORKSPACE.try_with(|location| location.set(Some(thread)));
         answer
     }
 
@@ -73,33 +73,33 @@ impl Workbench {
 
 /// Memory to work in.
 #[derive(Default)]
-pub(super) struct Scratch {
+pub(super) struct Workspace {
     pub epa: EpaScratch,
     pub clip: ClipScratch,
-    pub shells: Shells,
+    pub polytope_cache: PolytopeCache,
 }
 
 /// A hull with a rounded border of this radius around it.
 #[derive(Clone, Copy)]
-struct Prepared<'a> {
-    place: Place<'a>,
-    border: f64,
+struct HullHandle<'a> {
+    location: HullLocation<'a>,
+    border_radius: f64,
 }
 
 #[derive(Clone, Copy)]
-enum Place<'a> {
+enum HullLocation<'a> {
     /// The shape brings it along.
     Own(&'a Hull),
     /// It was prepared for the shape.
     Found(HullRef),
 }
 
-impl<'a> Prepared<'a> {
+impl<'a> HullHandle<'a> {
     #[inline]
-    fn hull(&self, table: &'a HullTable) -> Option<&'a Hull> {
-        match self.place {
-            Place::Own(hull) => Some(hull),
-            Place::Found(place) => table.get(place),
+    fn hull(&self, cache: &'a HullCache) -> Option<&'a Hull> {
+        match self.location {
+            HullLocation::Own(hull) => Some(hull),
+            HullLocation::Found(location) => cache.get(location),
         }
     }
 }
@@ -109,7 +109,7 @@ pub(super) struct Pair<'a, B> {
     pub hull: &'a Hull,
     pub other: &'a B,
     /// The radii of the rounded borders around them.
-    pub borders: [f64; 2],
+    pub border_radii: [f64; 2],
     /// The hull is the second of the shapes that were asked about.
     pub swapped: bool,
 }
@@ -137,14 +137,14 @@ impl<'a, B> Pair<'a, B> {
     /// Up to this distance they touch. `size` is that of both without borders.
     #[inline(always)]
     pub fn touching(&self, size: f64) -> f64 {
-        TOUCHING * (size + self.borders[0] + self.borders[1])
+        MIN_DIRECTED_DISTANCE * (size + self.border_radii[0] + self.border_radii[1])
     }
 
     /// How far apart they are without borders, if with them they are as far apart as this, or touch at
     /// that distance. `size` is that of both without borders.
     #[inline(always)]
-    pub fn between_cores(&self, distance: Real, size: f64) -> f64 {
-        f64::from(distance) + self.borders[0] + self.borders[1] + self.touching(size)
+    pub fn core_distance(&self, distance: Real, size: f64) -> f64 {
+        f64::from(distance) + self.border_radii[0] + self.border_radii[1] + self.touching(size)
     }
 }
 
@@ -163,16 +163,16 @@ pub(super) trait PairVisitor: Sized {
     fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,
-        scratch: &mut Scratch,
+        workspace: &mut Workspace,
     ) -> Option<Self::Answer>;
 
     /// The other shape is a half-space.
     fn visit_half_space(
         &mut self,
         pair: &Pair<'_, HalfSpace>,
-        scratch: &mut Scratch,
+        workspace: &mut Workspace,
     ) -> Option<Self::Answer> {
-        let _ = (pair, scratch);
+        let _ = (pair, workspace);
         None
     }
 
@@ -182,22 +182,22 @@ pub(super) trait PairVisitor: Sized {
         &mut self,
         pair: &Pair<'_, B>,
         features: &dyn PolygonalFeatureMap,
-        scratch: &mut Scratch,
+        workspace: &mut Workspace,
     ) -> Option<Self::Answer> {
-        let _ = (pair, features, scratch);
+        let _ = (pair, features, workspace);
         None
     }
 }
 
 /// A hull among parry's shapes.
 #[derive(Clone, Copy)]
-enum AnyHull<'a> {
+enum HullSource<'a> {
     /// With a rounded border of this radius.
     Plain(&'a ConvexPolyhedron, Real),
     Prepared(&'a HullShape),
 }
 
-impl<'a> AnyHull<'a> {
+impl<'a> HullSource<'a> {
     /// By the type that it is: what a user's shape shows as its typed shape may be a likeness only.
     #[inline]
     fn of(shape: &'a dyn Shape) -> Option<Self> {
@@ -217,17 +217,17 @@ impl<'a> AnyHull<'a> {
 
 /// Whether a shape is a hull to us, so that pairs with it are ours to answer.
 pub(super) fn is_hull(shape: &dyn Shape) -> bool {
-    AnyHull::of(shape).is_some()
+    HullSource::of(shape).is_some()
 }
 
 /// A shape of a pair, and how to find its hull.
-pub(super) struct Side<'a, F> {
+pub(super) struct Operand<'a, F> {
     pub shape: &'a dyn Shape,
-    hull: Option<AnyHull<'a>>,
+    hull: Option<HullSource<'a>>,
     pub find: F,
 }
 
-impl<'a> Side<'a, EachProved> {
+impl<'a> Operand<'a, EachProved> {
     /// A shape of which nothing is known.
     #[inline]
     pub fn alone(shape: &'a dyn Shape) -> Self {
@@ -235,26 +235,26 @@ impl<'a> Side<'a, EachProved> {
     }
 }
 
-impl<F> Side<'_, F> {
+impl<F> Operand<'_, F> {
     /// Whether both are one hull. A rounded one may have the address of the one within it.
     #[inline(always)]
-    fn is_same<G>(&self, other: &Side<'_, G>) -> bool {
-        std::ptr::addr_eq(self.shape, other.shape) && self.border() == other.border()
+    fn is_same<G>(&self, other: &Operand<'_, G>) -> bool {
+        std::ptr::addr_eq(self.shape, other.shape) && self.border_radius() == other.border_radius()
     }
 
     #[inline]
-    fn border(&self) -> Real {
+    fn border_radius(&self) -> Real {
         match self.hull {
-            Some(AnyHull::Plain(_, border)) => border,
+            Some(HullSource::Plain(_, border_radius)) => border_radius,
             _ => 0.0,
         }
     }
 }
 
-impl<'a, F: Find<'a>> Side<'a, F> {
+impl<'a, F: Find<'a>> Operand<'a, F> {
     #[inline]
     pub fn new(shape: &'a dyn Shape, find: F) -> Self {
-        let hull = AnyHull::of(shape);
+        let hull = HullSource::of(shape);
         Self { shape, hull, find }
     }
 
@@ -265,7 +265,7 @@ impl<'a, F: Find<'a>> Side<'a, F> {
 
     /// Whether it may consist of parts. Of most shapes it is known at once that they do not.
     #[inline]
-    pub fn may_have_parts(&self) -> bool {
+    pub fn may_be_composite(&self) -> bool {
         use ShapeType::{Compound, Custom, HeightField, Polyline, TriMesh, Voxels};
         !self.is_hull()
             && matches!(
@@ -276,8 +276,8 @@ impl<'a, F: Find<'a>> Side<'a, F> {
 
     /// The same once more.
     #[inline]
-    pub fn again(&mut self) -> Side<'a, &mut F> {
-        Side {
+    pub fn again(&mut self) -> Operand<'a, &mut F> {
+        Operand {
             shape: self.shape,
             hull: self.hull,
             find: &mut self.find,
@@ -286,15 +286,15 @@ impl<'a, F: Find<'a>> Side<'a, F> {
 
     /// The hull, if the shape is one.
     #[inline(always)]
-    fn prepare(&mut self, table: &mut HullTable) -> Option<Prepared<'a>> {
+    fn prepare(&mut self, cache: &mut HullCache) -> Option<HullHandle<'a>> {
         Some(match self.hull? {
-            AnyHull::Plain(polyhedron, border) => Prepared {
-                place: Place::Found(self.find.find(table, polyhedron)?),
-                border: border.into(),
+            HullSource::Plain(polyhedron, border_radius) => HullHandle {
+                location: HullLocation::Found(self.find.find(cache, polyhedron)?),
+                border_radius: border_radius.into(),
             },
-            AnyHull::Prepared(shape) => Prepared {
-                place: Place::Own(shape.hull()),
-                border: 0.0,
+            HullSource::Prepared(shape) => HullHandle {
+                location: HullLocation::Own(shape.hull()),
+                border_radius: 0.0,
             },
         })
     }
@@ -307,57 +307,70 @@ pub(super) fn visit<V: PairVisitor>(
     shape_2: &dyn Shape,
     visitor: V,
 ) -> Option<V::Answer> {
-    visit_sides(Side::alone(shape_1), Side::alone(shape_2), None, visitor)
+    visit_operands(
+        Operand::alone(shape_1),
+        Operand::alone(shape_2),
+        None,
+        visitor,
+    )
 }
 
-/// As [`visit`], for shapes that are unchanged during `span`.
+/// As [`visit`], for shapes that are unchanged during `epoch`.
 // In a call the sides would go through memory, which pairs that are apart notice.
 #[inline(always)]
-pub(super) fn visit_sides<'a, 'b, V: PairVisitor>(
-    mut side_1: Side<'a, impl Find<'a>>,
-    mut side_2: Side<'b, impl Find<'b>>,
-    span: Option<Span>,
+pub(super) fn visit_operands<'a, 'b, V: PairVisitor>(
+    mut operand_1: Operand<'a, impl Find<'a>>,
+    mut operand_2: Operand<'b, impl Find<'b>>,
+    epoch: Option<Epoch>,
     mut visitor: V,
 ) -> Option<V::Answer> {
-    match [side_1.is_hull(), side_2.is_hull()] {
+    match [operand_1.is_hull(), operand_2.is_hull()] {
         [true, true] => {
-            Workbench::with(|Workbench { hulls, scratch, .. }| {
-                hulls.begin(span);
-                let first = side_1.prepare(hulls)?;
-                // Two colliders with one shape, which many worlds are full of, need one proof.
-                let second = if side_1.is_same(&side_2) {
-                    first
-                } else {
-                    side_2.prepare(hulls)?
-                };
-                let pair = Pair {
-                    hull: first.hull(hulls)?,
-                    other: second.hull(hulls)?,
-                    borders: [first.border, second.border],
-                    swapped: false,
-                };
-                visitor.visit(&pair, scratch)
-            })
+            ThreadWorkspace::with(
+                |ThreadWorkspace {
+                     hulls, workspace, ..
+                 }| {
+                    hulls.begin(epoch);
+                    let first = operand_1.prepare(hulls)?;
+                    // Two colliders with one shape, which many worlds are full of, need one proof.
+                    let second = if operand_1.is_same(&operand_2) {
+                        first
+                    } else {
+                        operand_2.prepare(hulls)?
+                    };
+                    let pair = Pair {
+                        hull: first.hull(hulls)?,
+                        other: second.hull(hulls)?,
+                        border_radii: [first.border_radius, second.border_radius],
+                        swapped: false,
+                    };
+                    visitor.visit(&pair, workspace)
+                },
+            )
         }
-        [true, false] => Besides::new(&mut side_1, span, false).visit(side_2.shape, &mut visitor),
-        [false, true] => Besides::new(&mut side_2, span, true).visit(side_1.shape, &mut visitor),
+        [true, false] => {
+            HullOperand::new(&mut operand_1, epoch, false).visit(operand_2.shape, &mut visitor)
+        }
+        [false, true] => {
+            HullOperand::new(&mut operand_2, epoch, true).visit(operand_1.shape, &mut visitor)
+        }
         [false, false] => None,
     }
 }
 
 /// A hull, and where in its pair it is. It is not looked up before the other shape is known.
-struct Besides<'s, 'a, F> {
-    side: &'s mut Side<'a, F>,
-    span: Option<Span>,
+struct HullOperand<'s, 'a, F> {
+    operand: &'s mut Operand<'a, F>,
+    epoch: Option<Epoch>,
     swapped: bool,
 }
 
-impl<'s, 'a, F: Find<'a>> Besides<'s, 'a, F> {
+impl<'s, 'a, F: Find<'a>> HullOperand<'s, 'a, F> {
     #[inline]
-    fn new(side: &'s mut Side<'a, F>, span: Option<Span>, swapped: bool) -> Self {
+    fn new(operand: &'s mut Operand<'a, F>, epoch: Option<Epoch>, swapped: bool) -> Self {
         Self {
-            side,
-            span,
+            operand,
+            epoch,
             swapped,
         }
     }
@@ -400,8 +413,8 @@ impl<'s, 'a, F: Find<'a>> Besides<'s, 'a, F> {
             }
             TypedShape::HalfSpace(half_space) if V::HALF_SPACES => {
                 let half_space = others::half_space(half_space)?;
-                self.with(&half_space, 0.0, |pair, scratch| {
-                    visitor.visit_half_space(pair, scratch)
+                self.with(&half_space, 0.0, |pair, workspace| {
+                    visitor.visit_half_space(pair, workspace)
                 })
             }
             TypedShape::Cylinder(cylinder) if V::CURVED => self.curved(cylinder, 0.0, visitor),
@@ -420,21 +433,23 @@ impl<'s, 'a, F: Find<'a>> Besides<'s, 'a, F> {
     fn polytope<V: PairVisitor>(
         &mut self,
         other: &impl Polytope,
-        border: Real,
+        border_radius: Real,
         visitor: &mut V,
     ) -> Option<V::Answer> {
-        self.with(other, border, |pair, scratch| visitor.visit(pair, scratch))
+        self.with(other, border_radius, |pair, workspace| {
+            visitor.visit(pair, workspace)
+        })
     }
 
     #[inline]
     fn curved<V: PairVisitor>(
         &mut self,
-        other: &(impl Curved + PolygonalFeatureMap),
-        border: Real,
+        other: &(impl CurvedShape + PolygonalFeatureMap),
+        border_radius: Real,
         visitor: &mut V,
     ) -> Option<V::Answer> {
-        self.with(&other.kernel()?, border, |pair, scratch| {
-            visitor.visit_curved(pair, other, scratch)
+        self.with(&other.kernel()?, border_radius, |pair, workspace| {
+            visitor.visit_curved(pair, other, workspace)
         })
     }
 
@@ -443,19 +458,23 @@ impl<'s, 'a, F: Find<'a>> Besides<'s, 'a, F> {
     fn with<B, T>(
         &mut self,
         other: &B,
-        border: Real,
-        visit: impl FnOnce(&Pair<'_, B>, &mut Scratch) -> Option<T>,
+        border_radius: Real,
+        visit: impl FnOnce(&Pair<'_, B>, &mut Workspace) -> Option<T>,
     ) -> Option<T> {
-        Workbench::with(|Workbench { hulls, scratch, .. }| {
-            hulls.begin(self.span);
-            let prepared = self.side.prepare(hulls)?;
-            let pair = Pair {
-                hull: prepared.hull(hulls)?,
-                other,
-                borders: [prepared.border, border.into()],
-                swapped: self.swapped,
-            };
-            visit(&pair, scratch)
-        })
+        ThreadWorkspace::with(
+            |ThreadWorkspace {
+                 hulls, workspace, ..
+             }| {
+                hulls.begin(self.epoch);
+                let prepared = self.operand.prepare(hulls)?;
+                let pair = Pair {
+                    hull: prepared.hull(hulls)?,
+                    other,
+                    border_radii: [prepared.border_radius, border_radius.into()],
+                    swapped: self.swapped,
+                };
+                visit(&pair, workspace)
+            },
+        )
     }
 }

@@ -127,7 +127,7 @@ pub(super) fn cast_shapes(
 
 /// A shape on its way, with rotation.
 #[derive(Clone, Copy)]
-pub(super) struct Mover<'a> {
+pub(super) struct MovingShape<'a> {
     pub motion: &'a NonlinearRigidMotion,
     pub shape: &'a dyn Shape,
 }
@@ -136,7 +136,7 @@ pub(super) struct Mover<'a> {
 /// apart, wherever it looks.
 pub(super) fn cast_shapes_nonlinear(
     us: &IsaGjkDispatcher,
-    movers: [Mover<'_>; 2],
+    movers: [MovingShape<'_>; 2],
     [start, end]: [Real; 2],
     stop_at_penetration: bool,
 ) -> Option<Option<ShapeCastHit>> {

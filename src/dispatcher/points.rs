@@ -7,7 +7,7 @@ use parry3d::shape::PackedFeatureId;
 use wide::{f32x4, u32x4};
 
 use super::cache;
-use crate::both::both;
+use crate::both::map_pair;
 use crate::manifold::{Contacts, MAX_POINTS};
 use crate::query::Feature;
 
@@ -15,42 +15,42 @@ use crate::query::Feature;
 pub(super) fn write_points<M, C: Default + Copy>(
     manifold: &mut ContactManifold<M, C>,
     contacts: &Contacts,
-    borders: [f64; 2],
+    border_radii: [f64; 2],
     swapped: bool,
 ) {
     let normals = cache::ordered([manifold.local_n1, manifold.local_n2], swapped);
-    let places = Places::new(contacts, normals, borders, swapped);
+    let new_points = ManifoldPoints::new(contacts, normals, border_radii, swapped);
     let count = contacts.len;
     let tracked = &mut manifold.points;
-    let old = Identities::of(tracked);
-    let new = Identities::new(places.features, count);
+    let old = FeatureKeys::of(tracked);
+    let new = FeatureKeys::new(new_points.features, count);
     if old == new && tracked.len() == count {
         for (i, tracked) in tracked.iter_mut().enumerate() {
-            *tracked = places.tracked(i, tracked.data);
+            *tracked = new_points.tracked(i, tracked.data);
         }
         return;
     }
-    let heirs = heirs(tracked, &old, &places, &new, count);
+    let matches = match_old_points(tracked, &old, &new_points, &new, count);
     let data = |i: usize| tracked.get(i).map_or_else(C::default, |old| old.data);
     let inheritance = [data(0), data(1), data(2), data(3), C::default()];
     tracked.clear();
-    tracked.extend((0..count).map(|i| places.tracked(i, inheritance[heirs[i]])));
+    tracked.extend((0..count).map(|i| new_points.tracked(i, inheritance[matches[i]])));
 }
 
 /// Where contacts are, and between what, as the manifold sees the shapes: coordinate by coordinate, those
 /// that mean nothing included.
-struct Places {
+struct ManifoldPoints {
     points: [[[f32; MAX_POINTS]; 3]; 2],
     distances: [f32; MAX_POINTS],
     features: [[u32; MAX_POINTS]; 2],
 }
 
-impl Places {
+impl ManifoldPoints {
     #[inline(always)]
-    fn new(contacts: &Contacts, normals: [Vec3; 2], borders: [f64; 2], swapped: bool) -> Self {
+    fn new(contacts: &Contacts, normals: [Vec3; 2], border_radii: [f64; 2], swapped: bool) -> Self {
         let at_border = |(points, side): (&[f32x4; 3], usize)| {
             let [x, y, z] = *points;
-            let to_border = normals[side] * borders[side] as Real;
+            let to_border = normals[side] * border_radii[side] as Real;
             [
                 (x + to_border.x).to_array(),
                 (y + to_border.y).to_array(),
@@ -65,9 +65,9 @@ impl Places {
         // References, since which one comes first is selected.
         let sides = cache::ordered([(&contacts.on_1, 0), (&contacts.on_2, 1)], swapped);
         Self {
-            points: both(sides, at_border),
-            distances: (contacts.distance - (borders[0] + borders[1]) as Real).to_array(),
-            features: both(sides, |(_, side)| packed(side)),
+            points: map_pair(sides, at_border),
+            distances: (contacts.distance - (border_radii[0] + border_radii[1]) as Real).to_array(),
+            features: map_pair(sides, |(_, side)| packed(side)),
         }
     }
 
@@ -79,7 +79,7 @@ impl Places {
 
     #[inline(always)]
     fn tracked<C>(&self, i: usize, data: C) -> TrackedContact<C> {
-        let [fid1, fid2] = both([0, 1], |side| PackedFeatureId(self.features[side][i]));
+        let [fid1, fid2] = map_pair([0, 1], |side| PackedFeatureId(self.features[side][i]));
         TrackedContact {
             local_p1: self.point(0, i),
             local_p2: self.point(1, i),
@@ -91,11 +91,11 @@ impl Places {
     }
 }
 
-/// What the contacts of a manifold are between, see [`cache::identities`]: by the first shape, and by the
+/// What the contacts of a manifold are between, see [`cache::feature_keys`]: by the first shape, and by the
 /// second.
-struct Identities([u32x4; 2]);
+struct FeatureKeys([u32x4; 2]);
 
-impl Identities {
+impl FeatureKeys {
     /// Of a manifold; of contacts that it could have beside its own, nothing.
     #[inline(always)]
     fn of<C>(contacts: &[TrackedContact<C>]) -> Self {
@@ -115,14 +115,14 @@ impl Identities {
     #[inline(always)]
     fn new([first, second]: [[u32; MAX_POINTS]; 2], count: usize) -> Self {
         let counted = u32x4::new([0, 1, 2, 3]).simd_lt(u32x4::splat(count as u32));
-        let features = both([first, second], |row| u32x4::new(row) & counted);
-        Self(cache::identities(features))
+        let features = map_pair([first, second], |row| u32x4::new(row) & counted);
+        Self(cache::feature_keys(features))
     }
 
     /// A bit for each that is the same as one of the others.
     #[inline(always)]
     fn same(&self, others: &Self, one: usize) -> u32 {
-        let [a, b] = both([0, 1], |side| {
+        let [a, b] = map_pair([0, 1], |side| {
             let one = u32x4::splat(others.0[side].to_array()[one]);
             self.0[side].simd_eq(one)
         });
@@ -130,10 +130,10 @@ impl Identities {
     }
 }
 
-impl PartialEq for Identities {
+impl PartialEq for FeatureKeys {
     #[inline(always)]
     fn eq(&self, other: &Self) -> bool {
-        let [a, b] = both([0, 1], |side| self.0[side] ^ other.0[side]);
+        let [a, b] = map_pair([0, 1], |side| self.0[side] ^ other.0[side]);
         !(a | b).any()
     }
 }
@@ -145,35 +145,35 @@ const NONE: usize = MAX_POINTS;
 /// is left over goes to the nearest of the others, however far: an impulse in a wrong place of the
 /// patch is a better start for the solver than a body that is borne by three contacts of four.
 /// (Of another dispatcher's manifold no more points than ours have hand their data on.)
-fn heirs<C>(
+fn match_old_points<C>(
     old: &[TrackedContact<C>],
-    old_ids: &Identities,
-    places: &Places,
-    new_ids: &Identities,
+    old_ids: &FeatureKeys,
+    new_points: &ManifoldPoints,
+    new_ids: &FeatureKeys,
     count: usize,
 ) -> [usize; MAX_POINTS] {
     let old = &old[..old.len().min(MAX_POINTS)];
-    let mut heirs = [NONE; MAX_POINTS];
-    // A bit for each that has no heir yet.
+    let mut matches = [NONE; MAX_POINTS];
+    // A bit for each old point that is not matched yet.
     let mut left = (1_u32 << old.len()) - 1;
-    for (i, heir) in heirs[..count].iter_mut().enumerate() {
+    for (i, matched) in matches[..count].iter_mut().enumerate() {
         let candidates = old_ids.same(new_ids, i) & left;
-        *heir = (candidates.trailing_zeros() as usize).min(NONE);
+        *matched = (candidates.trailing_zeros() as usize).min(NONE);
         // All but the lowest one.
         left ^= candidates & candidates.wrapping_neg();
     }
     if left == 0 {
-        return heirs;
+        return matches;
     }
-    let orphans = heirs[..count].iter_mut().enumerate();
-    for (i, heir) in orphans.filter(|(_, heir)| **heir == NONE) {
-        let place = places.point(0, i);
+    let unmatched = matches[..count].iter_mut().enumerate();
+    for (i, matched) in unmatched.filter(|(_, matched)| **matched == NONE) {
+        let place = new_points.point(0, i);
         let away = |j: &usize| old[*j].local_p1.distance_squared(place);
         let others = (0..old.len()).filter(|j| left >> j & 1 == 1);
         if let Some(j) = others.min_by(|j, k| away(j).total_cmp(&away(k))) {
-            *heir = j;
+            *matched = j;
             left &= !(1 << j);
         }
     }
-    heirs
+    matches
 }

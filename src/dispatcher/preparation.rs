@@ -15,12 +15,12 @@ use crate::hull::Hull;
 use crate::hull::topology::{Diagonals, fingerprint, hull_and_diagonals, same_points};
 
 /// What is prepared of a polyhedron. Whether it is of this one is to be proved by
-/// [`is_of`](Self::is_of).
+/// [`matches`](Self::matches).
 #[derive(Debug)]
-pub(super) struct Preparation {
+pub(super) struct PreparedHull {
     /// `None` where no hull can be built: such a shape is left to parry.
     hull: Option<Hull>,
-    source: Source,
+    source: PointIdentity,
     diagonals: Diagonals,
     /// The fingerprint of the polyhedron.
     key: u64,
@@ -28,7 +28,7 @@ pub(super) struct Preparation {
 
 /// By what the points are known again that it was built from.
 #[derive(Debug)]
-enum Source {
+enum PointIdentity {
     /// Many, by a digest.
     Digest(Box<Digest>),
     /// They are the hull's own.
@@ -36,19 +36,19 @@ enum Source {
     Points(Box<[Vec3]>),
 }
 
-impl Preparation {
+impl PreparedHull {
     /// That of another polyhedron with the same points and edges, if one is in use; else a new one.
-    pub fn of(polyhedron: &ConvexPolyhedron) -> Arc<Self> {
+    pub fn get_or_build(polyhedron: &ConvexPolyhedron) -> Arc<Self> {
         let key = fingerprint(polyhedron);
-        let known = InUse::with(|in_use| in_use.find(key, polyhedron));
+        let known = HullRegistry::with(|registry| registry.find(key, polyhedron));
         // Other threads need not wait until it is built. Of those that build the same, one will be
         // the first.
         known.unwrap_or_else(|| {
             let new = Arc::new(Self::new(key, polyhedron));
-            InUse::with(|in_use| {
-                in_use
+            HullRegistry::with(|registry| {
+                registry
                     .find(key, polyhedron)
-                    .unwrap_or_else(|| in_use.add(new))
+                    .unwrap_or_else(|| registry.add(new))
             })
         })
     }
@@ -59,9 +59,9 @@ impl Preparation {
         let hull = hull.ok();
         let own = hull.as_ref().map(Hull::points);
         let source = match Digest::of(points) {
-            Some(digest) => Source::Digest(digest.into()),
-            None if own.is_some_and(|own| same_points(own, points)) => Source::Hull,
-            None => Source::Points(points.into()),
+            Some(digest) => PointIdentity::Digest(digest.into()),
+            None if own.is_some_and(|own| same_points(own, points)) => PointIdentity::Hull,
+            None => PointIdentity::Points(points.into()),
         };
         Self {
             hull,
@@ -75,7 +75,7 @@ impl Preparation {
     /// leaves.
     // perf: asked twice in each pair of hulls, most of which are proved apart in a thousand instructions.
     #[inline(always)]
-    pub fn is_of(&self, polyhedron: &ConvexPolyhedron) -> bool {
+    pub fn matches(&self, polyhedron: &ConvexPolyhedron) -> bool {
         self.has_points(polyhedron.points()) && self.diagonals.are_of(polyhedron)
     }
 
@@ -83,11 +83,11 @@ impl Preparation {
     #[inline(always)]
     fn has_points(&self, points: &[Vec3]) -> bool {
         match &self.source {
-            Source::Digest(digest) => digest.is_of(points),
-            Source::Hull => {
+            PointIdentity::Digest(digest) => digest.matches(points),
+            PointIdentity::Hull => {
                 (self.hull.as_ref()).is_some_and(|own| same_points(own.points(), points))
             }
-            Source::Points(source) => same_points(source, points),
+            PointIdentity::Points(source) => same_points(source, points),
         }
     }
 
@@ -104,44 +104,44 @@ impl Preparation {
     pub fn bytes(&self) -> usize {
         let hull = self.hull.as_ref().map_or(0, Hull::heap_bytes);
         let source = match &self.source {
-            Source::Points(points) => size_of_val(&**points),
-            Source::Digest(_) => size_of::<Digest>(),
-            Source::Hull => 0,
+            PointIdentity::Points(points) => size_of_val(&**points),
+            PointIdentity::Digest(_) => size_of::<Digest>(),
+            PointIdentity::Hull => 0,
         };
         size_of::<Self>() + hull + source + self.diagonals.heap_bytes()
     }
 
     /// Forgets those that no thread has any more.
     pub fn forget_unused() {
-        InUse::with(InUse::sweep);
+        HullRegistry::with(HullRegistry::sweep);
     }
 }
 
 /// Prepared hulls in use by any thread, keyed by fingerprint. A thread looks a polyhedron up here only
 /// on first use.
-struct InUse {
-    shared: BTreeMap<u64, Vec<Weak<Preparation>>>,
+struct HullRegistry {
+    shared: BTreeMap<u64, Vec<Weak<PreparedHull>>>,
     /// At how many fingerprints those are dropped that nobody uses any more.
     sweep_at: usize,
 }
 
-static IN_USE: Mutex<InUse> = Mutex::new(InUse {
+static REGISTRY: Mutex<HullRegistry> = Mutex::new(HullRegistry {
     shared: BTreeMap::new(),
     sweep_at: 0,
 });
 
-impl InUse {
+impl HullRegistry {
     fn with<T>(work: impl FnOnce(&mut Self) -> T) -> T {
         // A panic elsewhere leaves nothing half done here.
-        work(&mut IN_USE.lock().unwrap_or_else(PoisonError::into_inner))
+        work(&mut REGISTRY.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    fn find(&self, key: u64, polyhedron: &ConvexPolyhedron) -> Option<Arc<Preparation>> {
+    fn find(&self, key: u64, polyhedron: &ConvexPolyhedron) -> Option<Arc<PreparedHull>> {
         let mut alike = self.shared.get(&key)?.iter().filter_map(Weak::upgrade);
-        alike.find(|prepared| prepared.is_of(polyhedron))
+        alike.find(|prepared| prepared.matches(polyhedron))
     }
 
-    fn add(&mut self, new: Arc<Preparation>) -> Arc<Preparation> {
+    fn add(&mut self, new: Arc<PreparedHull>) -> Arc<PreparedHull> {
         if self.shared.len() >= self.sweep_at {
             self.sweep();
         }
@@ -160,7 +160,7 @@ impl InUse {
     }
 }
 
-fn is_used(prepared: &Weak<Preparation>) -> bool {
+fn is_used(prepared: &Weak<PreparedHull>) -> bool {
     prepared.strong_count() > 0
 }
 
@@ -186,21 +186,22 @@ mod tests {
 
     #[test]
     fn equal_polyhedra_share_what_is_prepared() {
-        let here = Preparation::of(&pyramid(1.0, false));
+        let here = PreparedHull::get_or_build(&pyramid(1.0, false));
         assert!(here.hull().is_some());
-        let there = thread::spawn(|| Preparation::of(&pyramid(1.0, false)));
+        let there = thread::spawn(|| PreparedHull::get_or_build(&pyramid(1.0, false)));
         let there = there.join().expect("no panic");
         assert!(Arc::ptr_eq(&here, &there));
-        let higher = Preparation::of(&pyramid(1.5, false));
+        let higher = PreparedHull::get_or_build(&pyramid(1.5, false));
         assert!(!Arc::ptr_eq(&here, &higher));
-        assert!(higher.is_of(&pyramid(1.5, false)));
+        assert!(higher.matches(&pyramid(1.5, false)));
     }
 
     /// The diagonals of a flat side are our own, so any others make the same hull.
     #[test]
     fn the_diagonals_of_flat_sides_do_not_matter() {
-        let [one, other] = [false, true].map(|diagonal| Preparation::of(&pyramid(1.0, diagonal)));
-        assert!(one.is_of(&pyramid(1.0, false)) && one.is_of(&pyramid(1.0, true)));
+        let [one, other] =
+            [false, true].map(|diagonal| PreparedHull::get_or_build(&pyramid(1.0, diagonal)));
+        assert!(one.matches(&pyramid(1.0, false)) && one.matches(&pyramid(1.0, true)));
         let [one, other] = [one, other].map(|prepared| format!("{:?}", prepared.hull()));
         assert_eq!(one, other);
     }
@@ -208,10 +209,10 @@ mod tests {
     /// With a vertex inside of a flat side the names of features depend on the edges.
     #[test]
     fn other_edges_are_another_polyhedron() {
-        let [one, other] = [false, true].map(|cut| Preparation::of(&six_sided(cut)));
+        let [one, other] = [false, true].map(|cut| PreparedHull::get_or_build(&six_sided(cut)));
         assert!(one.hull().is_some() && other.hull().is_some());
-        assert!(one.is_of(&six_sided(false)) && !one.is_of(&six_sided(true)));
-        assert!(other.is_of(&six_sided(true)) && !other.is_of(&six_sided(false)));
+        assert!(one.matches(&six_sided(false)) && !one.matches(&six_sided(true)));
+        assert!(other.matches(&six_sided(true)) && !other.matches(&six_sided(false)));
     }
 
     /// A pyramid with a vertex inside of its base, to which all corners have an edge, or all but one.
@@ -234,23 +235,27 @@ mod tests {
 
     #[test]
     fn that_there_is_no_hull_is_shared_as_well() {
-        let [flat, again] = [(); 2].map(|()| Preparation::of(&pyramid(1e-9, false)));
+        let [flat, again] = [(); 2].map(|()| PreparedHull::get_or_build(&pyramid(1e-9, false)));
         assert!(flat.hull().is_none());
         assert!(Arc::ptr_eq(&flat, &again));
     }
 
     #[test]
     fn what_nobody_uses_is_not_kept() {
-        let used = Preparation::of(&pyramid(2.0, false));
+        let used = PreparedHull::get_or_build(&pyramid(2.0, false));
         for i in 0..1000 {
-            let seen = Arc::downgrade(&Preparation::of(&pyramid(3.0 + i as f32, false)));
+            let seen = Arc::downgrade(&PreparedHull::get_or_build(&pyramid(3.0 + i as f32, false)));
             assert_eq!(seen.strong_count(), 0);
         }
         for _ in 0..1000 {
-            Preparation::of(&pyramid(2.5, false));
+            PreparedHull::get_or_build(&pyramid(2.5, false));
         }
-        let kept = InUse::with(|in_use| in_use.shared.values().map(Vec::len).sum::<usize>());
+        let kept =
+            HullRegistry::with(|registry| registry.shared.values().map(Vec::len).sum::<usize>());
         assert!(kept < 100, "{kept} kept");
-        assert!(Arc::ptr_eq(&used, &Preparation::of(&pyramid(2.0, false))));
+        assert!(Arc::ptr_eq(
+            &used,
+            &PreparedHull::get_or_build(&pyramid(2.0, false))
+        ));
     }
 }

@@ -20,8 +20,8 @@ pub(super) struct Scale(Real);
 impl Scale {
     /// The power of two that brings the smaller radius of two to between one and two.
     pub fn of<B: Support>(pair: &Pair<'_, B>) -> Self {
-        let radius_1 = pair.hull.radius() + pair.borders[0];
-        let radius_2 = pair.other.radius() + pair.borders[1];
+        let radius_1 = pair.hull.radius() + pair.border_radii[0];
+        let radius_2 = pair.other.radius() + pair.border_radii[1];
         let wanted = radius_1.min(radius_2).log2().floor();
         let possible = (radius_1.max(radius_2) / LARGEST_SCALED).log2().ceil();
         // Of what f32 has as normal numbers, with their inverses.
@@ -71,11 +71,11 @@ pub(super) fn contact<B: Support>(
     let [shape_1, shape_2] = ordered(shapes, pair.swapped);
     let mut contact =
         contact_support_map_support_map(&scale.pose(pos12), &shape_1, &shape_2, Real::MAX)?;
-    let borders = pair.borders.map(|border| border as Real);
-    let [border_1, border_2] = ordered(borders, pair.swapped);
-    contact.point1 = contact.point1 / scale.0 + contact.normal1 * border_1;
-    contact.point2 = contact.point2 / scale.0 + contact.normal2 * border_2;
-    contact.dist = contact.dist / scale.0 - (border_1 + border_2);
+    let border_radii = pair.border_radii.map(|border_radius| border_radius as Real);
+    let [border_radius_1, border_radius_2] = ordered(border_radii, pair.swapped);
+    contact.point1 = contact.point1 / scale.0 + contact.normal1 * border_radius_1;
+    contact.point2 = contact.point2 / scale.0 + contact.normal2 * border_radius_2;
+    contact.dist = contact.dist / scale.0 - (border_radius_1 + border_radius_2);
     Some(contact)
 }
 

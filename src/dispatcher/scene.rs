@@ -1,7 +1,7 @@
 //! Queries without memory: distance, contact, closest points and intersection of hulls.
 //!
 //! Only `contact` asks how deep shapes overlap; the others end with GJK. Shapes that are apart by no more
-//! than [`TOUCHING`](crate::tolerance::TOUCHING) touch, for all of them.
+//! than [`MIN_DIRECTED_DISTANCE`](crate::tolerance::MIN_DIRECTED_DISTANCE) touch, for all of them.
 
 use glam::DVec3;
 use parry3d::math::{Pose, Real};
@@ -11,12 +11,12 @@ use parry3d::shape::{PolygonalFeatureMap, Shape};
 use super::cache::ordered;
 use super::half_space;
 use super::others::HalfSpace;
-use super::pair::{self, Pair, PairVisitor, Scratch};
+use super::pair::{self, Pair, PairVisitor, Workspace};
 use super::scaled;
 use crate::epa;
 use crate::gjk::{self, Outcome};
 use crate::pose::RelativePose;
-use crate::query::{Answer, Memory, Proximity, Query};
+use crate::query::{Answer, PairMemory, Proximity, Query};
 use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{Polytope, Support};
@@ -25,14 +25,14 @@ use crate::tolerance::{GJK_CURVED_GAP, GJK_GAP_OF_SIZE};
 /// Whether two shapes touch or overlap. `None`, here and below: not a pair for us.
 pub(super) fn intersect(pos12: &Pose, shape_1: &dyn Shape, shape_2: &dyn Shape) -> Option<bool> {
     let separation = separation(pos12, shape_1, shape_2, 0.0)?;
-    Some(matches!(separation, Separation::None))
+    Some(matches!(separation, Separation::Overlapping))
 }
 
 /// Zero where the shapes overlap.
 pub(super) fn distance(pos12: &Pose, shape_1: &dyn Shape, shape_2: &dyn Shape) -> Option<Real> {
     Some(match separation(pos12, shape_1, shape_2, Real::INFINITY)? {
-        Separation::None => 0.0,
-        Separation::Near(near) => near.signed_distance as Real,
+        Separation::Overlapping => 0.0,
+        Separation::Within(near) => near.signed_distance as Real,
         Separation::Beyond => Real::INFINITY,
     })
 }
@@ -45,8 +45,8 @@ pub(super) fn closest_points(
     max_distance: Real,
 ) -> Option<ClosestPoints> {
     Some(match separation(pos12, shape_1, shape_2, max_distance)? {
-        Separation::None => ClosestPoints::Intersecting,
-        Separation::Near(near) => {
+        Separation::Overlapping => ClosestPoints::Intersecting,
+        Separation::Within(near) => {
             let [p1, p2] = near.points.map(|p| p.as_vec3());
             ClosestPoints::WithinMargin(p1, p2)
         }
@@ -67,15 +67,15 @@ pub(super) fn contact(
 
 /// The nearest points of a pair, its rounded borders accounted for. Normals and points are in
 /// their own shapes' frames.
-pub(super) struct Near {
+pub(super) struct CallerProximity {
     pub signed_distance: f64,
     pub normals: [DVec3; 2],
     pub points: [DVec3; 2],
 }
 
-impl Near {
-    pub fn of_proximity(near: &Proximity, seen: &Seen<'_>) -> Self {
-        seen.near(near.normal, [near.on_1, near.on_2], near.signed_distance)
+impl CallerProximity {
+    pub fn of_proximity(near: &Proximity, frame: &KernelFrame<'_>) -> Self {
+        frame.near(near.normal, [near.on_1, near.on_2], near.signed_distance)
     }
 
     fn contact(&self) -> Contact {
@@ -86,29 +86,29 @@ impl Near {
 }
 
 /// How the kernels see a pair: the hull first, in whose frame they answer.
-pub(super) struct Seen<'a> {
+pub(super) struct KernelFrame<'a> {
     /// Of the other shape, in the frame of the hull.
     pose: &'a RelativePose,
-    borders: [f64; 2],
+    border_radii: [f64; 2],
     swapped: bool,
 }
 
-impl<'a> Seen<'a> {
+impl<'a> KernelFrame<'a> {
     pub fn new<B>(pair: &Pair<'_, B>, pose: &'a RelativePose) -> Self {
         Self {
             pose,
-            borders: pair.borders,
+            border_radii: pair.border_radii,
             swapped: pair.swapped,
         }
     }
 
     /// From the normal and the points of the cores, in the frame of the hull.
-    pub fn near(&self, normal: DVec3, [on_1, on_2]: [DVec3; 2], distance: f64) -> Near {
+    pub fn near(&self, normal: DVec3, [on_1, on_2]: [DVec3; 2], distance: f64) -> CallerProximity {
         let normals = [normal, -self.pose.direction_to_2(normal)];
         let points = [on_1, self.pose.point_to_2(on_2)];
-        let points = [0, 1].map(|i| points[i] + normals[i] * self.borders[i]);
-        Near {
-            signed_distance: distance - self.borders[0] - self.borders[1],
+        let points = [0, 1].map(|i| points[i] + normals[i] * self.border_radii[i]);
+        CallerProximity {
+            signed_distance: distance - self.border_radii[0] - self.border_radii[1],
             normals: ordered(normals, self.swapped),
             points: ordered(points, self.swapped),
         }
@@ -118,20 +118,20 @@ impl<'a> Seen<'a> {
 /// What lies between two shapes.
 enum Separation {
     /// Nothing: they touch or overlap.
-    None,
+    Overlapping,
     /// A gap, and where it is narrowest.
-    Near(Near),
+    Within(CallerProximity),
     /// More than was asked about.
     Beyond,
 }
 
 impl Separation {
     /// Up to the distance `touching` the shapes touch.
-    fn of(near: Near, touching: f64) -> Self {
+    fn of(near: CallerProximity, touching: f64) -> Self {
         if near.signed_distance <= touching {
-            Self::None
+            Self::Overlapping
         } else {
-            Self::Near(near)
+            Self::Within(near)
         }
     }
 }
@@ -162,24 +162,26 @@ impl SeparationQuery<'_> {
         let cost = &mut Cost::default();
         let size = cso.size();
         // Within its gap GJK does not know: there, too, they touch, for all queries.
-        let max_distance = pair.between_cores(self.max_distance, size) + gap * size;
-        if cso.has_balls_apart(max_distance) {
+        let max_distance = pair.core_distance(self.max_distance, size) + gap * size;
+        if cso.are_spheres_apart(max_distance) {
             return Some(Separation::Beyond);
         }
         let axis = cso.towards_origin();
-        let vertex = match gjk::test_axis(&cso, axis, cso.start(axis), max_distance, cost) {
+        let vertex = match gjk::test_axis(&cso, axis, cso.start_vertices(axis), max_distance, cost)
+        {
             Ok(_) => return Some(Separation::Beyond),
             Err(vertex) => vertex,
         };
         let outcome =
             gjk::distance_within::<Preferred, _, _>(&cso, &[vertex], max_distance, gap, cost);
         Some(match outcome {
-            Outcome::Apart(_) => Separation::Beyond,
-            Outcome::Overlap(_) => Separation::None,
-            Outcome::Near(closest) if closest.distance > max_distance => Separation::Beyond,
-            Outcome::Near(closest) => {
+            Outcome::Separated(_) => Separation::Beyond,
+            Outcome::Overlapping(_) => Separation::Overlapping,
+            Outcome::Disjoint(closest) if closest.distance > max_distance => Separation::Beyond,
+            Outcome::Disjoint(closest) => {
                 let points = [closest.on_1, closest.on_2];
-                let near = Seen::new(pair, &pose).near(closest.normal, points, closest.distance);
+                let near =
+                    KernelFrame::new(pair, &pose).near(closest.normal, points, closest.distance);
                 Separation::of(near, pair.touching(size) + gap * size)
             }
         })
@@ -193,7 +195,11 @@ impl PairVisitor for SeparationQuery<'_> {
 
     const CURVED: bool = true;
 
-    fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, _: &mut Scratch) -> Option<Self::Answer> {
+    fn visit<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        _: &mut Workspace,
+    ) -> Option<Self::Answer> {
         self.separation(pair, GJK_GAP_OF_SIZE)
     }
 
@@ -201,7 +207,7 @@ impl PairVisitor for SeparationQuery<'_> {
         &mut self,
         pair: &Pair<'_, B>,
         _: &dyn PolygonalFeatureMap,
-        _: &mut Scratch,
+        _: &mut Workspace,
     ) -> Option<Self::Answer> {
         self.separation(pair, GJK_CURVED_GAP)
     }
@@ -209,7 +215,7 @@ impl PairVisitor for SeparationQuery<'_> {
     fn visit_half_space(
         &mut self,
         pair: &Pair<'_, HalfSpace>,
-        _: &mut Scratch,
+        _: &mut Workspace,
     ) -> Option<Self::Answer> {
         let near = over_half_space(pair, self.pos12, self.max_distance)?;
         let touching = pair.touching(pair.hull.radius());
@@ -229,15 +235,15 @@ fn over_half_space(
     pair: &Pair<'_, HalfSpace>,
     pos12: &Pose,
     max_distance: Real,
-) -> Option<Option<Near>> {
+) -> Option<Option<CallerProximity>> {
     let pose = valid_pose(pair, pos12)?;
-    let max_distance = pair.between_cores(max_distance, pair.hull.radius());
-    if half_space::has_ball_apart(pair, &pose, max_distance) {
+    let max_distance = pair.core_distance(max_distance, pair.hull.radius());
+    if half_space::is_sphere_apart(pair, &pose, max_distance) {
         return Some(None);
     }
-    let deepest = half_space::deepest(pair, &pose, &Memory::None, &mut Cost::default());
+    let deepest = half_space::deepest(pair, &pose, &PairMemory::None, &mut Cost::default());
     let is_near = deepest.signed_distance <= max_distance;
-    Some(is_near.then(|| Near::of_proximity(&deepest, &Seen::new(pair, &pose))))
+    Some(is_near.then(|| CallerProximity::of_proximity(&deepest, &KernelFrame::new(pair, &pose))))
 }
 
 struct ContactQuery<'a> {
@@ -247,12 +253,12 @@ struct ContactQuery<'a> {
 
 impl ContactQuery<'_> {
     /// The contact of shapes that touch or overlap, by EPA.
-    fn depth<B: Support>(&self, pair: &Pair<'_, B>, scratch: &mut Scratch) -> Option<Contact> {
+    fn depth<B: Support>(&self, pair: &Pair<'_, B>, workspace: &mut Workspace) -> Option<Contact> {
         let pose = valid_pose(pair, self.pos12)?;
         let cost = &mut Cost::default();
-        let found = epa::penetration(&pair.cso(&pose), &[], &mut scratch.epa, cost)?;
+        let found = epa::penetration(&pair.cso(&pose), &[], &mut workspace.epa, cost)?;
         let points = [found.on_1, found.on_2];
-        let near = Seen::new(pair, &pose).near(found.normal, points, -found.depth);
+        let near = KernelFrame::new(pair, &pose).near(found.normal, points, -found.depth);
         Some(near.contact())
     }
 }
@@ -267,23 +273,23 @@ impl PairVisitor for ContactQuery<'_> {
     fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,
-        scratch: &mut Scratch,
+        workspace: &mut Workspace,
     ) -> Option<Self::Answer> {
         let pose = valid_pose(pair, self.pos12)?;
         let cso = pair.cso(&pose);
         let (answer, _) = Query {
             cso: &cso,
-            max_distance: pair.between_cores(self.prediction, cso.size()),
-            shells: None,
-            scratch: &mut scratch.epa,
+            max_distance: pair.core_distance(self.prediction, cso.size()),
+            polytope_cache: None,
+            scratch: &mut workspace.epa,
             cost: &mut Cost::default(),
         }
-        .run(&Memory::None)?;
+        .run(&PairMemory::None)?;
         Some(match answer {
-            Answer::Apart(_) => None,
+            Answer::Separated(_) => None,
             Answer::Near(near) => {
-                let seen = Seen::new(pair, &pose);
-                Some(Near::of_proximity(&near, &seen).contact())
+                let frame = KernelFrame::new(pair, &pose);
+                Some(CallerProximity::of_proximity(&near, &frame).contact())
             }
         })
     }
@@ -293,18 +299,18 @@ impl PairVisitor for ContactQuery<'_> {
         &mut self,
         pair: &Pair<'_, B>,
         features: &dyn PolygonalFeatureMap,
-        scratch: &mut Scratch,
+        workspace: &mut Workspace,
     ) -> Option<Self::Answer> {
         let query = SeparationQuery {
             pos12: self.pos12,
             max_distance: self.prediction,
         };
         match query.separation(pair, GJK_CURVED_GAP)? {
-            Separation::None => {
+            Separation::Overlapping => {
                 let contact = scaled::contact(pair, features, self.pos12);
-                Some(contact.or_else(|| self.depth(pair, scratch)))
+                Some(contact.or_else(|| self.depth(pair, workspace)))
             }
-            Separation::Near(near) => Some(Some(near.contact())),
+            Separation::Within(near) => Some(Some(near.contact())),
             Separation::Beyond => Some(None),
         }
     }
@@ -312,7 +318,7 @@ impl PairVisitor for ContactQuery<'_> {
     fn visit_half_space(
         &mut self,
         pair: &Pair<'_, HalfSpace>,
-        _: &mut Scratch,
+        _: &mut Workspace,
     ) -> Option<Self::Answer> {
         let near = over_half_space(pair, self.pos12, self.prediction)?;
         Some(near.map(|near| near.contact()))

@@ -12,24 +12,24 @@ use parry3d::shape::Shape;
 use super::constraints::Constraints;
 use super::hulls::LastProved;
 use super::int_hash::IntMap;
-use super::pair::Side;
+use super::pair::Operand;
 use super::{IsaGjkDispatcher, composite};
 
 /// A convex part, or a convex whole.
-pub(super) struct Part<'a> {
+pub(super) struct SubShape<'a> {
     /// Its number; 0 for a whole.
     pub id: u32,
-    pub side: Side<'a, LastProved<'a>>,
+    pub operand: Operand<'a, LastProved<'a>>,
     /// Where it is in the compound.
     pub pos: Option<Pose>,
     pub constraints: Constraints<'a>,
 }
 
-impl<'a> Part<'a> {
+impl<'a> SubShape<'a> {
     pub fn whole(shape: &'a dyn Shape) -> Self {
         Self {
             id: 0,
-            side: Side::new(shape, LastProved::default()),
+            operand: Operand::new(shape, LastProved::default()),
             pos: None,
             constraints: Constraints::None,
         }
@@ -37,7 +37,7 @@ impl<'a> Part<'a> {
 }
 
 /// The manifolds of a pair, while they are brought up to date.
-pub(super) struct Update<'a, M, C> {
+pub(super) struct SubManifolds<'a, M, C> {
     dispatcher: &'a IsaGjkDispatcher,
     pub prediction: Real,
     manifolds: &'a mut Vec<ContactManifold<M, C>>,
@@ -57,14 +57,14 @@ fn key(part_1: u32, part_2: u32) -> u64 {
     u64::from(part_1) << 32 | u64::from(part_2)
 }
 
-impl<'a, M, C> Update<'a, M, C>
+impl<'a, M, C> SubManifolds<'a, M, C>
 where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
 {
     /// Our workspace, or one of parry's routines for such pairs, says that the manifolds are of
     /// these shapes. Without it they may be of shapes that were here before.
-    pub fn begin(
+    pub fn new(
         dispatcher: &'a IsaGjkDispatcher,
         prediction: Real,
         manifolds: &'a mut Vec<ContactManifold<M, C>>,
@@ -102,14 +102,19 @@ where
     }
 
     /// Two parts, the second at `pos12` in the frame of the first.
-    pub fn parts(&mut self, pos12: &Pose, part_1: &mut Part<'_>, part_2: &mut Part<'_>) {
+    pub fn update_pair(
+        &mut self,
+        pos12: &Pose,
+        part_1: &mut SubShape<'_>,
+        part_2: &mut SubShape<'_>,
+    ) {
         let manifold = self.manifold(part_1, part_2);
         let constraints = [part_1.constraints, part_2.constraints];
         // As parry's routines do: a pair that nobody supports has no contacts.
         let _ = self.dispatcher.update_manifold(
             pos12,
-            (part_1.side.again(), part_2.side.again()),
-            self.dispatcher.unchanged.span(),
+            (part_1.operand.again(), part_2.operand.again()),
+            self.dispatcher.epochs.epoch(),
             constraints,
             self.prediction,
             &mut self.manifolds[manifold],
@@ -117,7 +122,7 @@ where
     }
 
     /// Where the manifold of two parts is: mostly where it was, for parts come in the same order.
-    fn manifold(&mut self, part_1: &Part<'_>, part_2: &Part<'_>) -> usize {
+    fn manifold(&mut self, part_1: &SubShape<'_>, part_2: &SubShape<'_>) -> usize {
         let place = self.done;
         let known = self.find(part_1.id, part_2.id);
         let found = known.unwrap_or(self.manifolds.len());
@@ -166,7 +171,7 @@ where
     }
 
     /// Drops the manifolds of parts that meet no more.
-    pub fn end(self) {
+    pub fn finish(self) {
         self.manifolds.truncate(self.done);
     }
 }

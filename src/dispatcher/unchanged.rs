@@ -4,18 +4,18 @@ use std::num::NonZeroU64;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A span, by a number that no other one has.
-pub(super) type Span = NonZeroU64;
+/// An epoch, by a number that no other one has.
+pub(super) type Epoch = NonZeroU64;
 
-/// The span that is under way, if there is one; clones share it.
+/// The epoch that is under way, if there is one; clones share it.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Unchanged(Arc<AtomicU64>);
+pub(super) struct EpochSource(Arc<AtomicU64>);
 
-impl Unchanged {
-    /// Runs `work` as a span. A span ends all others: those that were under way, and this one if
-    /// another begins. So a clone in another thread costs proofs, and no proof outlives its span.
+impl EpochSource {
+    /// Runs `work` as an epoch. An epoch ends all others: those that were under way, and this one if
+    /// another begins. So a clone in another thread costs proofs, and no proof outlives its epoch.
     pub fn run<R>(&self, work: impl FnOnce() -> R) -> R {
-        /// Ends the span also where `work` panics.
+        /// Ends the epoch also where `work` panics.
         struct End<'a>(&'a AtomicU64);
         impl Drop for End<'_> {
             fn drop(&mut self) {
@@ -24,14 +24,14 @@ impl Unchanged {
         }
         static LAST: AtomicU64 = AtomicU64::new(0);
         // Whatever shares the work with other threads also makes them see this.
-        let span = LAST.fetch_add(1, Ordering::Relaxed) + 1;
-        self.0.store(span, Ordering::Relaxed);
+        let epoch = LAST.fetch_add(1, Ordering::Relaxed) + 1;
+        self.0.store(epoch, Ordering::Relaxed);
         let _end = End(&self.0);
         work()
     }
 
     #[inline]
-    pub fn span(&self) -> Option<Span> {
-        Span::new(self.0.load(Ordering::Relaxed))
+    pub fn epoch(&self) -> Option<Epoch> {
+        Epoch::new(self.0.load(Ordering::Relaxed))
     }
 }

@@ -14,7 +14,7 @@ mod seed;
 mod shell;
 mod shells;
 
-pub use shells::Shells;
+pub use shells::PolytopeCache;
 
 use glam::DVec3;
 
@@ -70,48 +70,56 @@ pub fn penetration<A: Support, B: Support>(
     cost: &mut Cost,
 ) -> Option<Penetration> {
     match penetration_below(cso, seeds, f64::INFINITY, scratch, cost)? {
-        Depth::Found(found) => Some(found),
-        Depth::Known => None,
+        DepthSearch::Found(found) => Some(found),
+        DepthSearch::NotBelow => None,
     }
 }
 
 /// The penetration depth if it is less than `known_depth` by more than the tolerance, as
-/// [`penetration`] finds it; else [`Depth::Known`]: then none is less by more than twice that.
+/// [`penetration`] finds it; else [`DepthSearch::NotBelow`]: then none is less by more than twice that.
 pub fn penetration_below<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     seeds: &[CsoVertex],
     known_depth: f64,
     scratch: &mut EpaScratch,
     cost: &mut Cost,
-) -> Option<Depth> {
+) -> Option<DepthSearch> {
     let polytope = &mut scratch.polytope;
-    let tolerance = DEPTH_GAP * cso.smaller_radius();
-    let reach = known_depth - tolerance;
-    polytope.start(seed::tetrahedron(cso, seeds, cost)?, cso.size(), reach);
+    let tolerance = DEPTH_GAP * cso.min_radius();
+    let search_radius = known_depth - tolerance;
+    polytope.start(
+        seed::tetrahedron(cso, seeds, cost)?,
+        cso.size(),
+        search_radius,
+    );
     for seed in seeds {
-        polytope.include(seed);
+        polytope.insert_if_outside(seed);
     }
     let mut best = (f64::INFINITY, None);
     for _ in 0..MAX_EXPANSIONS {
         let Some(face) = polytope.nearest_face() else {
-            if best.0 >= reach - tolerance {
-                return Some(Depth::Known);
+            if best.0 >= search_radius - tolerance {
+                return Some(DepthSearch::NotBelow);
             }
             break;
         };
         let (normal, distance) = polytope.plane(face);
         cost.iterations += 1;
         // The corners of the face are mostly farther from where the climbs end.
-        let w = cso.support(normal, cso.start(normal), cost);
+        let w = cso.support(normal, cso.start_vertices(normal), cost);
         let depth = normal.dot(w.w);
         let is_bound = depth - distance <= tolerance;
-        if depth < -tolerance || is_bound && depth < reach {
-            return Some(Depth::Found(witness(polytope, face, [distance, depth])));
+        if depth < -tolerance || is_bound && depth < search_radius {
+            return Some(DepthSearch::Found(witness(
+                polytope,
+                face,
+                [distance, depth],
+            )));
         }
         if depth < best.0 {
             best = (depth, Some(face));
             // No face beyond an upper bound of the depth can be the one to be found.
-            polytope.shorten_reach(depth + tolerance);
+            polytope.limit_search(depth + tolerance);
         }
         // A face that cannot be expanded (a sliver with an unreliable normal) is passed over.
         let is_stuck = !is_bound && (polytope.contains(&w) || !polytope.expand(face, w));
@@ -119,13 +127,13 @@ pub fn penetration_below<A: Support, B: Support>(
             cost.fallbacks += 1;
         }
         if is_bound || is_stuck {
-            polytope.discard(face);
+            polytope.remove_from_queue(face);
         }
     }
     cost.fallbacks += 1;
     let (depth, face) = best;
     let bounds = [f64::NEG_INFINITY, depth];
-    Some(Depth::Found(witness(polytope, face?, bounds)))
+    Some(DepthSearch::Found(witness(polytope, face?, bounds)))
 }
 
 /// The answer of [`penetration_below`].
@@ -134,9 +142,9 @@ pub fn penetration_below<A: Support, B: Support>(
     reason = "lives for one call, on the stack"
 )]
 #[derive(Clone, Copy, Debug)]
-pub enum Depth {
+pub enum DepthSearch {
     /// No direction has a depth below that known before.
-    Known,
+    NotBelow,
     /// This is the depth.
     Found(Penetration),
 }

@@ -11,18 +11,18 @@ use crate::tolerance::COPLANAR;
 
 /// An edge of a face as that face sees it: four times the face, plus the number of the corner
 /// where the edge starts.
-type HalfEdge = u32;
+type FaceEdge = u32;
 
-fn half_edge(face: u32, number: u32) -> HalfEdge {
+fn face_edge(face: u32, number: u32) -> FaceEdge {
     4 * face + number
 }
 
-fn face_of(edge: HalfEdge) -> u32 {
+fn face_of(edge: FaceEdge) -> u32 {
     edge / 4
 }
 
 /// The number of the edge within its face.
-fn number(edge: HalfEdge) -> usize {
+fn number(edge: FaceEdge) -> usize {
     (edge % 4) as usize
 }
 
@@ -36,7 +36,7 @@ const NEXT: [usize; 3] = [1, 2, 0];
 struct Face {
     corners: [u32; 3],
     /// The same edges as seen from the neighbouring faces.
-    across: [HalfEdge; 3],
+    across: [FaceEdge; 3],
     normal: DVec3,
     distance: f64,
     alive: bool,
@@ -82,25 +82,25 @@ pub(super) struct ExpandingPolytope {
     vertices: Vec<CsoVertex>,
     faces: Vec<Face>,
     heap: BinaryHeap<Candidate>,
-    horizon: Vec<HalfEdge>,
+    horizon: Vec<FaceEdge>,
     visible: Vec<u32>,
-    stack: Vec<HalfEdge>,
+    stack: Vec<FaceEdge>,
     /// The sides of an added surface by their ends: in rows by start.
-    sides: Vec<HalfEdge>,
+    sides: Vec<FaceEdge>,
     coplanar: f64,
     /// A face whose plane is no nearer than this is not searched.
-    reach: f64,
+    search_radius: f64,
 }
 
 impl ExpandingPolytope {
     /// Starts over without anything. `size` is what tolerances are relative to; faces no nearer to
-    /// the origin than `reach` are not searched.
-    pub fn clear(&mut self, size: f64, reach: f64) {
+    /// the origin than `search_radius` are not searched.
+    pub fn clear(&mut self, size: f64, search_radius: f64) {
         self.vertices.clear();
         self.faces.clear();
         self.heap.clear();
         self.coplanar = COPLANAR * size;
-        self.reach = reach;
+        self.search_radius = search_radius;
     }
 
     pub fn push(&mut self, vertex: CsoVertex) {
@@ -110,7 +110,7 @@ impl ExpandingPolytope {
     /// Adds the triangles of a closed surface over the vertices that were pushed; `false` if an edge
     /// does not tell which triangles meet there: it is there twice, or has no other side.
     pub fn add_surface(&mut self, triangles: &[[u8; 3]]) -> bool {
-        const NONE: HalfEdge = HalfEdge::MAX;
+        const NONE: FaceEdge = FaceEdge::MAX;
         let count = self.vertices.len();
         let place = |from: u8, to: u8| usize::from(from) * count + usize::from(to);
         self.sides.clear();
@@ -121,7 +121,7 @@ impl ExpandingPolytope {
                 if *side != NONE {
                     return false;
                 }
-                *side = half_edge(face, k as u32);
+                *side = face_edge(face, k as u32);
             }
         }
         triangles.iter().all(|triangle| {
@@ -132,8 +132,8 @@ impl ExpandingPolytope {
     }
 
     /// Starts over from a tetrahedron with volume, as [`clear`](Self::clear) does.
-    pub fn start(&mut self, corners: [CsoVertex; 4], size: f64, reach: f64) {
-        self.clear(size, reach);
+    pub fn start(&mut self, corners: [CsoVertex; 4], size: f64, search_radius: f64) {
+        self.clear(size, search_radius);
         let [a, b, c, d] = corners.map(|v| v.w);
         let outward = (b - a).cross(c - a).dot(d - a) < 0.0;
         self.vertices.extend(if outward {
@@ -186,19 +186,19 @@ impl ExpandingPolytope {
     }
 
     /// Takes a face out of the search, not out of the surface.
-    pub fn discard(&mut self, face: u32) {
+    pub fn remove_from_queue(&mut self, face: u32) {
         if self.heap.peek().is_some_and(|top| top.face == face) {
             self.heap.pop();
         }
     }
 
-    /// From now on faces no nearer than `reach` are not searched.
-    pub fn shorten_reach(&mut self, reach: f64) {
-        self.reach = self.reach.min(reach);
+    /// From now on faces no nearer than `search_radius` are not searched.
+    pub fn limit_search(&mut self, search_radius: f64) {
+        self.search_radius = self.search_radius.min(search_radius);
     }
 
     /// Grows to a point of the difference, if that is outside: one that need not be searched for.
-    pub fn include(&mut self, vertex: &CsoVertex) {
+    pub fn insert_if_outside(&mut self, vertex: &CsoVertex) {
         let is_outside = |face: &Face| face.alive && face.height(vertex.w) > self.coplanar;
         if let Some(face) = self.faces.iter().position(is_outside) {
             self.expand(face as u32, *vertex);
@@ -225,15 +225,15 @@ impl ExpandingPolytope {
             let next = if new == last { first } else { new + 1 };
             let previous = if new == first { last } else { new - 1 };
             // Seen from the new face the shared edge runs the other way.
-            let across = [outside, half_edge(next, 2), half_edge(previous, 1)];
+            let across = [outside, face_edge(next, 2), face_edge(previous, 1)];
             self.add([b, a, apex], across);
-            self.faces[face_of(outside) as usize].across[number(outside)] = half_edge(new, 0);
+            self.faces[face_of(outside) as usize].across[number(outside)] = face_edge(new, 0);
         }
         true
     }
 
     /// The corners where an edge starts and ends, in its own face's sense.
-    fn edge_corners(&self, edge: HalfEdge) -> [u32; 2] {
+    fn edge_corners(&self, edge: FaceEdge) -> [u32; 2] {
         let corners = self.faces[face_of(edge) as usize].corners;
         let k = number(edge);
         [corners[k], corners[NEXT[k]]]
@@ -287,7 +287,7 @@ impl ExpandingPolytope {
             })
     }
 
-    fn add(&mut self, corners: [u32; 3], across: [HalfEdge; 3]) {
+    fn add(&mut self, corners: [u32; 3], across: [FaceEdge; 3]) {
         let [a, b, c] = corners.map(|v| self.vertices[v as usize].w);
         let area = (b - a).cross(c - a);
         let squared = area.length_squared();
@@ -295,7 +295,10 @@ impl ExpandingPolytope {
         let (normal, distance) = if squared > 0.0 {
             let normal = area * squared.sqrt().recip();
             let heights = [a, b, c].map(|corner| normal.dot(corner));
-            (normal, lesser(heights[0], lesser(heights[1], heights[2])))
+            (
+                normal,
+                min_no_nan(heights[0], min_no_nan(heights[1], heights[2])),
+            )
         } else {
             (DVec3::ZERO, f64::INFINITY)
         };
@@ -307,14 +310,14 @@ impl ExpandingPolytope {
             distance,
             alive: true,
         });
-        if distance < self.reach {
+        if distance < self.search_radius {
             self.heap.push(Candidate { distance, face });
         }
     }
 }
 
-/// The lesser of two numbers, none of which is missing: what `min` would have to look into.
-pub(super) fn lesser(a: f64, b: f64) -> f64 {
+/// The lesser of two numbers. Neither is NaN, so the check for it in `f64::min` is not needed.
+pub(super) fn min_no_nan(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }
 

@@ -13,14 +13,14 @@ pub(super) fn tetrahedron<A: Support, B: Support>(
     seeds: &[CsoVertex],
     cost: &mut Cost,
 ) -> Option<[CsoVertex; 4]> {
-    let search = Search {
+    let search = SeedSearch {
         cso,
         seeds,
         size: cso.size(),
     };
     let first = match seeds.first() {
         Some(seed) => *seed,
-        None => cso.support(DVec3::X, cso.start(DVec3::X), cost),
+        None => cso.support(DVec3::X, cso.start_vertices(DVec3::X), cost),
     };
     let axes = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| [axis, -axis]);
     let second = search.farthest(axes.as_flattened(), cost, |p| (p - first.w).length())?;
@@ -36,13 +36,13 @@ pub(super) fn tetrahedron<A: Support, B: Support>(
     Some([first, second, third, fourth])
 }
 
-struct Search<'a, 's, A, B> {
+struct SeedSearch<'a, 's, A, B> {
     cso: &'a Cso<'s, A, B>,
     seeds: &'a [CsoVertex],
     size: f64,
 }
 
-impl<A: Support, B: Support> Search<'_, '_, A, B> {
+impl<A: Support, B: Support> SeedSearch<'_, '_, A, B> {
     /// The point for which `measure` is largest, if that is not degenerate.
     fn farthest(
         &self,
@@ -68,7 +68,7 @@ impl<A: Support, B: Support> Search<'_, '_, A, B> {
             if good {
                 break;
             }
-            let start = self.cso.start(direction);
+            let start = self.cso.start_vertices(direction);
             good = consider(self.cso.support(direction, start, cost));
         }
         best

@@ -10,7 +10,7 @@
 use glam::DVec3;
 
 use super::EpaScratch;
-use super::polytope::{ExpandingPolytope, lesser};
+use super::polytope::{ExpandingPolytope, min_no_nan};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
 use crate::tolerance::{DEPTH_GAP, PROOF_MARGIN};
@@ -29,7 +29,7 @@ const CENTER: [u16; 2] = [u16::MAX; 2];
 
 /// A polytope inside of a Minkowski difference, without coordinates.
 #[derive(Clone, Debug)]
-pub(super) struct Shell {
+pub(super) struct CachedPolytope {
     /// The vertices of the two shapes that each is the difference of.
     vertices: [[u16; 2]; MOST_VERTICES],
     /// Counter-clockwise seen from outside.
@@ -39,7 +39,7 @@ pub(super) struct Shell {
     face_count: u8,
 }
 
-impl Default for Shell {
+impl Default for CachedPolytope {
     fn default() -> Self {
         Self {
             vertices: [[0; 2]; MOST_VERTICES],
@@ -50,21 +50,21 @@ impl Default for Shell {
     }
 }
 
-impl Shell {
+impl CachedPolytope {
     /// Whether [`penetration_below`](super::penetration_below) would say that the depth is known, as
     /// far as this surface can tell, or what it grows to in a few expansions.
-    pub fn prove<A: Polytope, B: Polytope>(
+    pub fn proves_depth<A: Polytope, B: Polytope>(
         &mut self,
         cso: &Cso<'_, A, B>,
         known_depth: f64,
         scratch: &mut EpaScratch,
         cost: &mut Cost,
     ) -> bool {
-        let radius = known_depth - PROOF_MARGIN * DEPTH_GAP * cso.smaller_radius();
+        let radius = known_depth - PROOF_MARGIN * DEPTH_GAP * cso.min_radius();
         let polytope = &mut scratch.polytope;
         polytope.clear(cso.size(), radius);
-        for &name in &self.vertices[..self.vertex_count.into()] {
-            match named(name, cso) {
+        for &key in &self.vertices[..self.vertex_count.into()] {
+            match vertex_at(key, cso) {
                 Some(vertex) => polytope.push(vertex),
                 None => return false,
             }
@@ -91,7 +91,7 @@ impl Shell {
             if !(height > 0.0 && squared > 0.0) {
                 return f64::NEG_INFINITY;
             }
-            least = lesser(least, squared);
+            least = min_no_nan(least, squared);
         }
         if self.face_count > 0 {
             least.sqrt()
@@ -114,12 +114,12 @@ impl Shell {
         }
         for _ in 0..MAX_EXPANSIONS {
             let Some(face) = polytope.nearest_face() else {
-                self.keep(cso, scratch);
+                self.store(cso, scratch);
                 return true;
             };
             let (normal, _) = polytope.plane(face);
             cost.iterations += 1;
-            let vertex = cso.support(normal, cso.start(normal), cost);
+            let vertex = cso.support(normal, cso.start_vertices(normal), cost);
             let is_farther = normal.dot(vertex.w) >= radius && !polytope.contains(&vertex);
             if !is_farther || !polytope.expand(face, vertex) {
                 return false;
@@ -129,7 +129,7 @@ impl Shell {
     }
 
     /// Keeps the polytope of the last expansion in a Minkowski difference, if it is small enough.
-    pub fn keep<A: Support, B: Support>(&mut self, cso: &Cso<'_, A, B>, scratch: &EpaScratch) {
+    pub fn store<A: Support, B: Support>(&mut self, cso: &Cso<'_, A, B>, scratch: &EpaScratch) {
         if self.copy(&scratch.polytope, cso.center()).is_none() {
             self.face_count = 0;
         }
@@ -145,8 +145,8 @@ impl Shell {
             for (corner, &vertex) in face.iter_mut().zip(corners) {
                 let number = numbers.get_mut(vertex as usize)?;
                 if *number == NONE {
-                    let name = self.vertices.get_mut(usize::from(self.vertex_count))?;
-                    *name = name_of(polytope.vertex(vertex), center);
+                    let key = self.vertices.get_mut(usize::from(self.vertex_count))?;
+                    *key = vertex_key(polytope.vertex(vertex), center);
                     *number = self.vertex_count;
                     self.vertex_count += 1;
                 }
@@ -158,7 +158,7 @@ impl Shell {
     }
 }
 
-fn name_of(vertex: &CsoVertex, center: DVec3) -> [u16; 2] {
+fn vertex_key(vertex: &CsoVertex, center: DVec3) -> [u16; 2] {
     if vertex.w == center {
         CENTER
     } else {
@@ -166,12 +166,12 @@ fn name_of(vertex: &CsoVertex, center: DVec3) -> [u16; 2] {
     }
 }
 
-/// The point with this name, if the shapes have its vertices.
-fn named<A: Polytope, B: Polytope>(name: [u16; 2], cso: &Cso<'_, A, B>) -> Option<CsoVertex> {
-    if name == CENTER {
+/// The point with this key, if the shapes have its vertices.
+fn vertex_at<A: Polytope, B: Polytope>(key: [u16; 2], cso: &Cso<'_, A, B>) -> Option<CsoVertex> {
+    if key == CENTER {
         return Some(cso.center_as_vertex([0; 2]));
     }
-    let ids @ [id_1, id_2] = name.map(VertexId::from);
-    let known = cso.shape_1.valid_start(id_1) == id_1 && cso.shape_2.valid_start(id_2) == id_2;
+    let ids @ [id_1, id_2] = key.map(VertexId::from);
+    let known = cso.shape_1.clamp_vertex(id_1) == id_1 && cso.shape_2.clamp_vertex(id_2) == id_2;
     known.then(|| cso.vertex(ids))
 }

@@ -2,20 +2,20 @@
 
 use glam::{DVec3, Vec3};
 
-use super::climb::{self, Slope};
+use super::climb::{self, HillClimb};
 use super::cloud;
 use super::faces::{Faces, area_vector, longest_side};
 use super::graph::EdgeGraph;
 use super::order;
 use super::scan::{self, Scan};
 use super::start::StartTable;
-use super::surface::{Surface, next};
-use super::{Hull, HullError, Search};
+use super::surface::{HalfEdgeMesh, next};
+use super::{Hull, HullError, SupportSearch};
 use crate::stats::Cost;
 use crate::support::{FaceId, Polytope};
-use crate::tolerance::{BOWL, CONVEXITY, FOLD, THINNEST};
+use crate::tolerance::{BOWL, MAX_DENT, MAX_INWARD_HEIGHT, MIN_EXTENT};
 
-/// The most vertices a hull may have: its at most `2 n - 4` faces must have 16-bit names.
+/// The most vertices a hull may have: its at most `2 n - 4` faces must have 16-bit ids.
 pub(super) const MAX_VERTICES: usize = 32_768;
 
 impl Hull {
@@ -36,16 +36,19 @@ impl Hull {
     /// # Ok::<(), isa_gjk::HullError>(())
     /// ```
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
-        cloud::surround(points, Self::in_order)
+        cloud::hull_of_points(points, Self::from_reordered_triangles)
     }
 
     /// As [`from_triangles`](Self::from_triangles), with the vertices in the order in which they are
     /// quickest to climb over.
-    pub(super) fn in_order(points: Vec<Vec3>, triangles: &[[u32; 3]]) -> Result<Self, HullError> {
+    pub(super) fn from_reordered_triangles(
+        points: Vec<Vec3>,
+        triangles: &[[u32; 3]],
+    ) -> Result<Self, HullError> {
         if points.len() <= scan::LARGEST {
             return Self::from_triangles(points, triangles);
         }
-        let (points, triangles) = order::along_curve(&points, triangles);
+        let (points, triangles) = order::morton_order(&points, triangles);
         Self::from_triangles(points, &triangles)
     }
 
@@ -62,40 +65,40 @@ impl Hull {
         if points.len() > MAX_VERTICES {
             return Err(HullError::TooManyPoints);
         }
-        require_finite(&points)?;
-        require_triangles(&points, triangles)?;
-        require_different(&points)?;
-        let surface = Surface::new(points.len(), triangles)?;
+        validate_finite(&points)?;
+        validate_triangles(&points, triangles)?;
+        validate_distinct(&points)?;
+        let mesh = HalfEdgeMesh::new(points.len(), triangles)?;
         // All arithmetic is f64: converted once.
         let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
         let (center, radius) = center_and_radius(&exact, triangles)?;
-        let at_flat_edge = require_convex(&exact, &surface, radius)?;
-        require_single_layer(&exact, triangles, center, radius)?;
+        let at_flat_edge = validate_convex(&exact, &mesh, radius)?;
+        validate_single_layer(&exact, triangles, center, radius)?;
 
-        let (mut faces, joined) = Faces::new(&exact, &surface, radius);
-        let mut graph = EdgeGraph::new(&surface, &joined.face_of);
-        let slope = Slope {
+        let (mut faces, merged) = Faces::new(&exact, &mesh, radius);
+        let mut graph = EdgeGraph::new(&mesh, &merged.face_of);
+        let climb = HillClimb {
             points: &points,
             graph: &graph,
             center,
             radius,
         };
-        require_no_bowl(slope, &faces)?;
-        faces.add_caps(&exact, &graph, &joined);
+        validate_no_bowl(climb, &faces)?;
+        faces.add_clusters(&exact, &graph, &merged);
         let search = match Scan::new(&points, center, radius) {
-            Some(scan) => Search::Scan(scan),
+            Some(scan) => SupportSearch::Scan(scan),
             None => {
-                graph.mark_fragile(|graph, v| {
+                graph.mark_plateau_search(|graph, v| {
                     at_flat_edge[v as usize] || climb::has_short_edge(&exact, graph, radius, v)
                 });
-                let slope = Slope {
+                let climb = HillClimb {
                     points: &points,
                     graph: &graph,
                     center,
                     radius,
                 };
-                Search::Climb(StartTable::new(points.len(), |dir, start| {
-                    climb::extreme_vertex(slope, dir, start, &mut Cost::default())
+                SupportSearch::Climb(StartTable::new(points.len(), |dir, start| {
+                    climb::extreme_vertex(climb, dir, start, &mut Cost::default())
                 }))
             }
         };
@@ -107,14 +110,14 @@ impl Hull {
             center,
             radius,
         };
-        hull.require_interior()?;
+        hull.validate_interior()?;
         Ok(hull)
     }
 
     /// The centre must be clearly inside of every face.
-    fn require_interior(&self) -> Result<(), HullError> {
+    fn validate_interior(&self) -> Result<(), HullError> {
         let deep_inside = (0..self.faces.len() as FaceId).all(|f| {
-            self.face_offset(f) - self.face_normal(f).dot(self.center) > THINNEST * self.radius
+            self.face_offset(f) - self.face_normal(f).dot(self.center) > MIN_EXTENT * self.radius
         });
         deep_inside.then_some(()).ok_or(HullError::Flat)
     }
@@ -126,14 +129,14 @@ impl AsRef<Self> for Hull {
     }
 }
 
-pub(super) fn require_finite(points: &[Vec3]) -> Result<(), HullError> {
+pub(super) fn validate_finite(points: &[Vec3]) -> Result<(), HullError> {
     match points.iter().position(|p| !p.is_finite()) {
         Some(i) => Err(HullError::NotFinite(i)),
         None => Ok(()),
     }
 }
 
-fn require_triangles(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), HullError> {
+fn validate_triangles(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), HullError> {
     let bad = |&[a, b, c]: &[u32; 3]| {
         a == b || b == c || c == a || [a, b, c].iter().any(|&v| v as usize >= points.len())
     };
@@ -144,7 +147,7 @@ fn require_triangles(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), Hull
 }
 
 /// No two points are in the same place: corners of a mesh that were not welded.
-fn require_different(points: &[Vec3]) -> Result<(), HullError> {
+fn validate_distinct(points: &[Vec3]) -> Result<(), HullError> {
     // Adding zero turns -0 into 0.
     let bits = |(i, p): (usize, &Vec3)| ((*p + Vec3::ZERO).to_array().map(f32::to_bits), i);
     let mut places: Vec<([u32; 3], usize)> = points.iter().enumerate().map(bits).collect();
@@ -171,7 +174,7 @@ fn center_and_radius(points: &[DVec3], triangles: &[[u32; 3]]) -> Result<(DVec3,
         distances.fold(0.0, f64::max).sqrt()
     };
     // Of a flat surface rounding chooses the sign.
-    if volume < -THINNEST * farthest(origin).powi(3) {
+    if volume < -MIN_EXTENT * farthest(origin).powi(3) {
         return Err(HullError::InsideOut);
     }
     if volume <= 0.0 {
@@ -187,22 +190,22 @@ fn center_and_radius(points: &[DVec3], triangles: &[[u32; 3]]) -> Result<(DVec3,
 ///
 /// A dent is as deep as the edge passes beneath the other diagonal of its two triangles. (Heights
 /// over the triangles' planes say nothing where these are slivers.)
-fn require_convex(
+fn validate_convex(
     points: &[DVec3],
-    surface: &Surface<'_>,
+    mesh: &HalfEdgeMesh<'_>,
     radius: f64,
 ) -> Result<Vec<bool>, HullError> {
     let mut at_flat_edge = vec![false; points.len()];
     let at = |v: u32| points[v as usize];
-    for h in 0..3 * surface.triangles.len() as u32 {
-        let twin = surface.twin(h);
+    for h in 0..3 * mesh.triangles.len() as u32 {
+        let twin = mesh.twin(h);
         if h < twin {
-            let ends = [surface.start(h), surface.end(h)];
-            let [third, opposite] = [h, twin].map(|h| surface.end(next(h)));
+            let ends = [mesh.start(h), mesh.end(h)];
+            let [third, opposite] = [h, twin].map(|h| mesh.end(next(h)));
             let ([a, b], c, d) = (ends.map(at), at(third), at(opposite));
             let across = (b - a).cross(d - c);
             let rise = (b - a).cross(c - a).dot(d - a);
-            let rounding = CONVEXITY * radius * across.length();
+            let rounding = MAX_DENT * radius * across.length();
             if rise > rounding {
                 return Err(HullError::NotConvex(opposite as usize));
             }
@@ -218,12 +221,12 @@ fn require_convex(
 
 /// No face has much of the hull before its plane. Each edge of a bowl is a dent within rounding, but
 /// many of them add up: the way up from the face leads to the rim.
-fn require_no_bowl(slope: Slope<'_>, faces: &Faces) -> Result<(), HullError> {
+fn validate_no_bowl(climb: HillClimb<'_>, faces: &Faces) -> Result<(), HullError> {
     for face in 0..faces.len() as FaceId {
         let normal = faces.normal(face);
         let corner = faces.polygon(face)[0].vertex.into();
-        let (summit, height) = climb::nearest_summit(slope, normal, corner);
-        if height - faces.offset(face) > BOWL * slope.radius {
+        let (summit, height) = climb::nearest_summit(climb, normal, corner);
+        if height - faces.offset(face) > BOWL * climb.radius {
             return Err(HullError::NotConvex(summit as usize));
         }
     }
@@ -236,7 +239,7 @@ fn require_no_bowl(slope: Slope<'_>, faces: &Faces) -> Result<(), HullError> {
 /// All edges of a fold may be convex, and all edges of two layers that end in each other. Hull
 /// builders working in f32 leave such on needles, whose cross-section they take for rounding; a
 /// climb would be trapped there far below the top.
-fn require_single_layer(
+fn validate_single_layer(
     points: &[DVec3],
     triangles: &[[u32; 3]],
     center: DVec3,
@@ -246,10 +249,11 @@ fn require_single_layer(
     for &triangle in triangles {
         let normal = area_vector(points, triangle);
         let [a, b, c] = triangle.map(|v| points[v as usize] - center);
-        let is_sliver = || normal.length() <= FOLD * radius * longest_side(points, triangle);
+        let is_sliver =
+            || normal.length() <= MAX_INWARD_HEIGHT * radius * longest_side(points, triangle);
         let is_fold = normal.dot(a) < 0.0 && !is_sliver();
         // The ray passes the sides on the left.
-        let passes = |from: DVec3, to: DVec3| from.cross(to).dot(SOME_DIRECTION) > 0.0;
+        let passes = |from: DVec3, to: DVec3| from.cross(to).dot(TEST_RAY) > 0.0;
         crossings += u32::from(passes(a, b) && passes(b, c) && passes(c, a));
         if is_fold || crossings > 1 {
             return Err(HullError::NotConvex(triangle[0] as usize));
@@ -259,4 +263,4 @@ fn require_single_layer(
 }
 
 /// None in which a hull is likely to have an edge.
-const SOME_DIRECTION: DVec3 = DVec3::new(0.267_3, -0.534_7, 0.801_7);
+const TEST_RAY: DVec3 = DVec3::new(0.267_3, -0.534_7, 0.801_7);

@@ -1,50 +1,50 @@
-//! Caps: faces that lie nearly in one plane with their neighbours, as those of a scanned or
-//! triangulated flat end do. Bodies rest on caps, not on single facets of them.
+//! Face clusters: faces that lie nearly in one plane with their neighbours, as those of a scanned or
+//! triangulated flat end do. Bodies rest on clusters, not on single facets of them.
 
 use glam::{DVec2, DVec3};
 
-use super::faces::{Corner, Faces};
+use super::faces::{FaceCorner, Faces};
 use super::graph::EdgeGraph;
 use crate::support::FaceId;
-use crate::tolerance::CAP_ANGLE_COS;
+use crate::tolerance::CLUSTER_ANGLE_COS;
 
-/// For each face that belongs to a cap, which faces know of themselves, the cap; for each cap, the
+/// For each face that belongs to a cluster, which faces know of themselves, the cluster; for each cluster, the
 /// faces under its outline in a row.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Caps {
-    /// Empty if there are no caps.
+pub(super) struct FaceClusters {
+    /// Empty if there are no clusters.
     of_face: Box<[u16]>,
     first: Box<[u32]>,
     faces: Box<[u16]>,
 }
 
-/// A cap has no more members than these, so that one contact is never the work of thousands of
-/// faces. What is left of a larger flat region becomes a cap beside it.
+/// A cluster has no more members than these, so that one contact is never the work of thousands of
+/// faces. What is left of a larger flat region becomes a cluster beside it.
 const MAX_MEMBERS: usize = 64;
 
-/// One cap.
-pub(super) struct Cap {
+/// One cluster.
+pub(super) struct FaceCluster {
     pub members: Vec<u16>,
     /// Faces that are no members, but lie partly under the outline, where that cuts across a bay.
-    bays: Vec<u16>,
+    covered_nonmembers: Vec<u16>,
     /// The corners of the convex outline.
     pub outline: Vec<u16>,
 }
 
-impl Caps {
-    pub fn new(caps: &[Cap], face_count: usize) -> Self {
-        if caps.is_empty() {
+impl FaceClusters {
+    pub fn new(clusters: &[FaceCluster], face_count: usize) -> Self {
+        if clusters.is_empty() {
             return Self::default();
         }
         let mut of_face = vec![0; face_count];
         let mut first = vec![0];
         let mut faces = Vec::new();
-        for (i, cap) in caps.iter().enumerate() {
-            for &face in &cap.members {
+        for (i, cluster) in clusters.iter().enumerate() {
+            for &face in &cluster.members {
                 of_face[face as usize] = i as u16;
             }
-            faces.extend_from_slice(&cap.members);
-            faces.extend_from_slice(&cap.bays);
+            faces.extend_from_slice(&cluster.members);
+            faces.extend_from_slice(&cluster.covered_nonmembers);
             first.push(faces.len() as u32);
         }
         Self {
@@ -54,12 +54,12 @@ impl Caps {
         }
     }
 
-    /// The number of the cap that `face`, which is in one, belongs to, and all faces under its outline.
+    /// The number of the cluster that `face`, which is in one, belongs to, and all faces under its outline.
     #[inline]
-    pub fn around(&self, face: FaceId) -> (usize, &[u16]) {
-        let cap = usize::from(self.of_face[face as usize]);
-        let faces = self.first[cap] as usize..self.first[cap + 1] as usize;
-        (cap, &self.faces[faces])
+    pub fn containing(&self, face: FaceId) -> (usize, &[u16]) {
+        let cluster = usize::from(self.of_face[face as usize]);
+        let faces = self.first[cluster] as usize..self.first[cluster + 1] as usize;
+        (cluster, &self.faces[faces])
     }
 
     pub fn heap_bytes(&self) -> usize {
@@ -67,17 +67,17 @@ impl Caps {
     }
 }
 
-/// Grows caps from the largest faces.
-pub(super) fn grow(
+/// Grows clusters from the largest faces.
+pub(super) fn grow_clusters(
     points: &[DVec3],
     faces: &Faces,
     graph: &EdgeGraph,
     largest_first: &[u16],
-) -> Vec<Cap> {
+) -> Vec<FaceCluster> {
     let mut taken = vec![false; faces.len()];
-    let mut caps = Vec::new();
+    let mut clusters = Vec::new();
     for &seed in largest_first {
-        let plane = Plane::of(points, faces, seed.into());
+        let plane = SeedPlane::of(points, faces, seed.into());
         if taken[usize::from(seed)] || plane.normal == DVec3::ZERO {
             continue;
         }
@@ -85,9 +85,9 @@ pub(super) fn grow(
         taken[usize::from(seed)] = true;
         let mut next = 0;
         while let Some(&member) = members.get(next) {
-            for other in beside(faces, graph, member) {
+            for other in adjacent_faces(faces, graph, member) {
                 let fits = members.len() < MAX_MEMBERS && !taken[other as usize];
-                if fits && plane.holds(points, faces, other) {
+                if fits && plane.accepts(points, faces, other) {
                     taken[other as usize] = true;
                     members.push(other as u16);
                 }
@@ -96,44 +96,49 @@ pub(super) fn grow(
         }
         if members.len() > 1 {
             let outline = plane.outline(points, faces, &members);
-            caps.push(Cap {
-                bays: bays(faces, graph, &members, &outline),
+            clusters.push(FaceCluster {
+                covered_nonmembers: covered_nonmembers(faces, graph, &members, &outline),
                 members,
                 outline,
             });
         }
     }
-    caps
+    clusters
 }
 
 /// The faces beyond the sides of a face.
-fn beside(faces: &Faces, graph: &EdgeGraph, face: u16) -> impl Iterator<Item = FaceId> {
+fn adjacent_faces(faces: &Faces, graph: &EdgeGraph, face: u16) -> impl Iterator<Item = FaceId> {
     let sides = 0..faces.polygon(face.into()).len();
     sides.filter_map(move |i| {
-        let [left, right] = graph.faces_beside(faces.edge(face.into(), i)?)?;
+        let [left, right] = graph.faces_of_edge(faces.edge(face.into(), i)?)?;
         Some(if left == face { right } else { left }.into())
     })
 }
 
 /// The faces that are no members around those vertices of the members that are inside of the
 /// outline.
-fn bays(faces: &Faces, graph: &EdgeGraph, members: &[u16], outline: &[u16]) -> Vec<u16> {
+fn covered_nonmembers(
+    faces: &Faces,
+    graph: &EdgeGraph,
+    members: &[u16],
+    outline: &[u16],
+) -> Vec<u16> {
     let corners = members.iter().flat_map(|&face| faces.polygon(face.into()));
     let inside = corners.map(|c| c.vertex).filter(|v| !outline.contains(v));
-    let around = inside.flat_map(|vertex| graph.faces_at(vertex.into()).flatten());
-    let mut bays: Vec<u16> = around.filter(|face| !members.contains(face)).collect();
-    bays.sort_unstable();
-    bays.dedup();
-    bays
+    let around = inside.flat_map(|vertex| graph.faces_around(vertex.into()).flatten());
+    let mut covered_nonmembers: Vec<u16> = around.filter(|face| !members.contains(face)).collect();
+    covered_nonmembers.sort_unstable();
+    covered_nonmembers.dedup();
+    covered_nonmembers
 }
 
-/// The plane of the face that a cap grows from.
-struct Plane {
+/// The plane of the face that a cluster grows from.
+struct SeedPlane {
     normal: DVec3,
     corner: DVec3,
 }
 
-impl Plane {
+impl SeedPlane {
     fn of(points: &[DVec3], faces: &Faces, face: FaceId) -> Self {
         Self {
             normal: faces.normal(face),
@@ -141,16 +146,16 @@ impl Plane {
         }
     }
 
-    /// Whether a face, and all that is seen of it from the seed, lies within the cap's angle. A
+    /// Whether a face, and all that is seen of it from the seed, lies within the cluster's angle. A
     /// sliver without a plane is judged by its corners alone.
-    fn holds(&self, points: &[DVec3], faces: &Faces, face: FaceId) -> bool {
-        let sine = (1.0 - CAP_ANGLE_COS * CAP_ANGLE_COS).sqrt();
-        let near = |corner: &Corner| {
+    fn accepts(&self, points: &[DVec3], faces: &Faces, face: FaceId) -> bool {
+        let sine = (1.0 - CLUSTER_ANGLE_COS * CLUSTER_ANGLE_COS).sqrt();
+        let near = |corner: &FaceCorner| {
             let from_corner = points[usize::from(corner.vertex)] - self.corner;
             self.normal.dot(from_corner) >= -sine * from_corner.length()
         };
         let other = faces.normal(face);
-        let aligned = other == DVec3::ZERO || other.dot(self.normal) >= CAP_ANGLE_COS;
+        let aligned = other == DVec3::ZERO || other.dot(self.normal) >= CLUSTER_ANGLE_COS;
         aligned && faces.polygon(face).iter().all(near)
     }
 
@@ -162,7 +167,7 @@ impl Plane {
         let mut corners: Vec<(DVec2, u16)> = members
             .iter()
             .flat_map(|&face| faces.polygon(face.into()))
-            .map(|&Corner { vertex, .. }| {
+            .map(|&FaceCorner { vertex, .. }| {
                 let p = points[usize::from(vertex)] - self.corner;
                 (DVec2::new(p.dot(u), p.dot(v)), vertex)
             })
@@ -170,14 +175,14 @@ impl Plane {
         corners
             .sort_by(|(a, i), (b, j)| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(i.cmp(j)));
         corners.dedup();
-        let mut outline = chain(corners.iter());
-        outline.extend(chain(corners.iter().rev()));
+        let mut outline = half_outline(corners.iter());
+        outline.extend(half_outline(corners.iter().rev()));
         outline
     }
 }
 
 /// Half of an outline, from the first point to before the last.
-fn chain<'a>(corners: impl Iterator<Item = &'a (DVec2, u16)>) -> Vec<u16> {
+fn half_outline<'a>(corners: impl Iterator<Item = &'a (DVec2, u16)>) -> Vec<u16> {
     let mut chain: Vec<(DVec2, u16)> = Vec::new();
     for &corner in corners {
         while let [.., (a, _), (b, _)] = chain[..]

@@ -16,10 +16,10 @@
 //! A dent may be a false summit for directions that point into the hull, however deep it is. But the
 //! top is above the centre. So a climb that ends below the centre is finished by a scan.
 //!
-//! Promise: with `s` the returned vertex, `h(d) - d·s` is at most [`PLATEAU`]` * radius * |d|` on
+//! Promise: with `s` the returned vertex, `h(d) - d·s` is at most [`SUPPORT_TIE`]` * radius * |d|` on
 //! convex hulls, and four times that on those that f32 rounding has dented, up to needles of
 //! 1:1000. The cross-section of longer ones is a few roundings; there it is at most two
-//! [`CONVEXITY`](crate::tolerance::CONVEXITY)` * radius * |d|`. Building refuses the surfaces on
+//! [`MAX_DENT`](crate::tolerance::MAX_DENT)` * radius * |d|`. Building refuses the surfaces on
 //! which a climb would lose more: with deeper dents, folds, or two layers. The limits are those
 //! measured in `tests/kernels/hill_climbing.rs`.
 
@@ -27,15 +27,15 @@ use std::array;
 
 use glam::{DVec3, Vec3};
 
-use super::graph::{EdgeGraph, LAST, Star};
-use super::top::{Highest, LANES, coordinates};
+use super::graph::{EdgeGraph, LAST, NeighborBlock};
+use super::top::{ArgMaxDot, LANES, coordinates};
 use crate::stats::Cost;
 use crate::support::VertexId;
-use crate::tolerance::{DIP, PLATEAU, SHORT_EDGE};
+use crate::tolerance::{DIP, SHORT_EDGE, SUPPORT_TIE};
 
 /// What a climb goes over.
 #[derive(Clone, Copy)]
-pub(super) struct Slope<'a> {
+pub(super) struct HillClimb<'a> {
     pub points: &'a [Vec3],
     pub graph: &'a EdgeGraph,
     pub center: DVec3,
@@ -50,7 +50,7 @@ enum Plateau {
     /// A vertex above it.
     Exit(VertexId),
     /// It is the maximum.
-    Top,
+    ArgMax,
     /// It is too large for a search.
     Large,
 }
@@ -58,32 +58,34 @@ enum Plateau {
 /// The extreme vertex in direction `dir`, climbing from `start`.
 #[inline(always)]
 pub(super) fn extreme_vertex(
-    slope: Slope<'_>,
+    climb: HillClimb<'_>,
     dir: DVec3,
     start: VertexId,
     cost: &mut Cost,
 ) -> VertexId {
     let mut at = start;
-    let mut value = slope.height(dir, at);
+    let mut value = climb.support_value(dir, at);
     loop {
-        let (best, height) = slope.best_neighbor(dir, at);
+        let (best, height) = climb.best_neighbor(dir, at);
         if height > value {
             (at, value) = (best, height);
             cost.climb_moves += 1;
             continue;
         }
-        if value < dir.dot(slope.center) {
-            return slope.scan(dir, at);
+        if value < dir.dot(climb.center) {
+            return climb.scan(dir, at);
         }
-        if slope.graph.star(at).is_fragile() && slope.is_hardly_lower(dir, value - height) {
-            match slope.search_plateau(dir, at) {
+        if climb.graph.block(at).needs_plateau_search()
+            && climb.is_hardly_lower(dir, value - height)
+        {
+            match climb.search_plateau(dir, at) {
                 Plateau::Exit(exit) => {
-                    (at, value) = (exit, slope.height(dir, exit));
+                    (at, value) = (exit, climb.support_value(dir, exit));
                     cost.climb_moves += 1;
                     continue;
                 }
-                Plateau::Large => return slope.scan(dir, at),
-                Plateau::Top => {}
+                Plateau::Large => return climb.scan(dir, at),
+                Plateau::ArgMax => {}
             }
         }
         return at;
@@ -91,10 +93,10 @@ pub(super) fn extreme_vertex(
 }
 
 /// A vertex without a better neighbour, and its height.
-pub(super) fn nearest_summit(slope: Slope<'_>, dir: DVec3, start: VertexId) -> (VertexId, f64) {
-    let (mut at, mut value) = (start, slope.height(dir, start));
+pub(super) fn nearest_summit(climb: HillClimb<'_>, dir: DVec3, start: VertexId) -> (VertexId, f64) {
+    let (mut at, mut value) = (start, climb.support_value(dir, start));
     loop {
-        let (best, height) = slope.best_neighbor(dir, at);
+        let (best, height) = climb.best_neighbor(dir, at);
         if height <= value {
             return (at, value);
         }
@@ -107,7 +109,7 @@ pub(super) fn nearest_summit(slope: Slope<'_>, dir: DVec3, start: VertexId) -> (
 /// no other.
 #[inline]
 pub(super) fn extreme_vertices<const N: usize>(
-    slope: Slope<'_>,
+    climb: HillClimb<'_>,
     dirs: [DVec3; N],
     starts: [VertexId; N],
 ) -> [VertexId; N] {
@@ -115,24 +117,24 @@ pub(super) fn extreme_vertices<const N: usize>(
     let mut arrived = [false; N];
     for (i, &dir) in dirs.iter().enumerate() {
         let start = starts[i];
-        let (best, height) = slope.best_neighbor(dir, start);
-        let value = slope.height(dir, start);
+        let (best, height) = climb.best_neighbor(dir, start);
+        let value = climb.support_value(dir, start);
         let is_better = height > value;
-        let is_above = value >= dir.dot(slope.center);
-        arrived[i] = !is_better & is_above & !slope.graph.star(start).is_fragile();
+        let is_above = value >= dir.dot(climb.center);
+        arrived[i] = !is_better & is_above & !climb.graph.block(start).needs_plateau_search();
         vertices[i] = if is_better { best } else { start };
     }
     for (i, &dir) in dirs.iter().enumerate() {
         if !arrived[i] {
-            vertices[i] = extreme_vertex(slope, dir, vertices[i], &mut Cost::default());
+            vertices[i] = extreme_vertex(climb, dir, vertices[i], &mut Cost::default());
         }
     }
     vertices
 }
 
-impl Slope<'_> {
+impl HillClimb<'_> {
     #[inline]
-    fn height(&self, dir: DVec3, vertex: VertexId) -> f64 {
+    fn support_value(&self, dir: DVec3, vertex: VertexId) -> f64 {
         dir.dot(self.points[vertex as usize].as_dvec3())
     }
 
@@ -140,34 +142,34 @@ impl Slope<'_> {
     /// branches: neither how many neighbours there are nor which of them is better is predictable.
     #[inline(always)]
     fn best_neighbor(&self, dir: DVec3, at: VertexId) -> (VertexId, f64) {
-        let star = self.graph.star(at);
-        let mut highest = Highest::new(dir);
-        self.look_at(star, 0, &mut highest);
-        if let Some(after) = self.graph.after(star) {
-            highest = self.look_further(after, highest);
+        let block = self.graph.block(at);
+        let mut highest = ArgMaxDot::new(dir);
+        self.scan_block(block, 0, &mut highest);
+        if let Some(after) = self.graph.next_block(block) {
+            highest = self.scan_overflow(after, highest);
         }
-        let top = highest.top();
-        let best = self.graph.neighbor(at, top.name as usize);
+        let top = highest.finish();
+        let best = self.graph.neighbor(at, top.id as usize);
         (best.unwrap_or(at), top.value)
     }
 
-    /// At the neighbours in a star, of which the first has this `place`.
+    /// Looks at the neighbours in a block, of which the first has this slot.
     #[inline(always)]
-    fn look_at(&self, star: &Star, place: usize, highest: &mut Highest) {
-        let to = star.to();
+    fn scan_block(&self, block: &NeighborBlock, slot: usize, highest: &mut ArgMaxDot) {
+        let to = block.to();
         let (fours, _) = to.as_chunks::<LANES>();
         for (i, four) in fours.iter().enumerate() {
             let corners = four.map(|w| &self.points[usize::from(w)]);
-            highest.look_at(place + i * LANES, coordinates(corners));
+            highest.update(slot + i * LANES, coordinates(corners));
         }
     }
 
-    /// At those in the stars from `star` on.
+    /// Those in the blocks from `block` on.
     #[cold]
     #[inline(never)]
-    fn look_further(&self, star: &Star, mut highest: Highest) -> Highest {
-        for (number, star) in (1..).zip(self.graph.stars_from(star)) {
-            self.look_at(star, number * LAST, &mut highest);
+    fn scan_overflow(&self, block: &NeighborBlock, mut highest: ArgMaxDot) -> ArgMaxDot {
+        for (number, block) in (1..).zip(self.graph.blocks_from(block)) {
+            self.scan_block(block, number * LAST, &mut highest);
         }
         highest
     }
@@ -183,13 +185,13 @@ impl Slope<'_> {
     #[cold]
     #[inline(never)]
     fn search_plateau(&self, dir: DVec3, start: VertexId) -> Plateau {
-        let [tie, dip] = [PLATEAU, DIP].map(|share| share * self.radius * dir.length());
-        let level = self.height(dir, start);
+        let [tie, dip] = [SUPPORT_TIE, DIP].map(|share| share * self.radius * dir.length());
+        let level = self.support_value(dir, start);
         let mut plateau = [start; SMALL_PLATEAU];
         let (mut next, mut count) = (0, 1);
         while next < count {
             for w in self.graph.neighbors(plateau[next]).map(VertexId::from) {
-                let height = self.height(dir, w);
+                let height = self.support_value(dir, w);
                 if height > level + tie {
                     return Plateau::Exit(w);
                 }
@@ -203,24 +205,24 @@ impl Slope<'_> {
             }
             next += 1;
         }
-        Plateau::Top
+        Plateau::ArgMax
     }
 
     /// The highest of all vertices, or `preferred` if that ties.
     #[cold]
     #[inline(never)]
     fn scan(&self, dir: DVec3, preferred: VertexId) -> VertexId {
-        let mut highest = Highest::new(dir);
+        let mut highest = ArgMaxDot::new(dir);
         for (number, chunk) in self.points.chunks(LANES).enumerate() {
             let corners = array::from_fn(|lane| chunk.get(lane).unwrap_or(&chunk[0]));
-            highest.look_at(number * LANES, coordinates(corners));
+            highest.update(number * LANES, coordinates(corners));
         }
-        let top = highest.top();
-        let tie = PLATEAU * self.radius * dir.length();
-        let is_above = top.value > self.height(dir, preferred) + tie;
+        let top = highest.finish();
+        let tie = SUPPORT_TIE * self.radius * dir.length();
+        let is_above = top.value > self.support_value(dir, preferred) + tie;
         // What fills up the last four repeats its first one, which is preferred among ties.
         if is_above {
-            top.name as VertexId
+            top.id as VertexId
         } else {
             preferred
         }

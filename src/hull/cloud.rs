@@ -4,44 +4,44 @@ use std::collections::{HashMap, HashSet};
 
 use glam::{DMat3, DVec3, Vec3};
 
-use super::build::require_finite;
+use super::build::validate_finite;
 use super::{Hull, HullError};
 use crate::support::{FaceId, Polytope, Support};
-use crate::tolerance::{LEFT_OUT, THICK, THINNEST};
+use crate::tolerance::{MAX_LEFT_OUT, MIN_EXTENT, MIN_TRUSTED_THICKNESS};
 
 /// Gives `build` the vertices and triangles around a point cloud.
 ///
 /// The builder decides in f32 what is flat, and finds no convex surface around needles and discs
-/// that are too thin for that, or one that leaves corners out. Such a cloud is made round first: an
+/// that are too thin for that, or one that leaves corners out. Such a cloud is whitened first: an
 /// affine map changes nothing of a hull but its coordinates.
-pub(crate) fn surround<T: AsRef<Hull>>(
+pub(crate) fn hull_of_points<T: AsRef<Hull>>(
     points: &[Vec3],
     build: impl Fn(Vec<Vec3>, &[[u32; 3]]) -> Result<T, HullError>,
 ) -> Result<T, HullError> {
     if points.len() < 4 {
         return Err(HullError::TooFewPoints);
     }
-    require_finite(points)?;
+    validate_finite(points)?;
     let around_all = |vertices, triangles: &[[u32; 3]]| {
         let built = build(vertices, triangles)?;
-        if leaves_out(built.as_ref(), points) {
+        if misses_points(built.as_ref(), points) {
             return Err(HullError::BuilderFailed);
         }
         Ok(built)
     };
     let as_it_is = || {
-        let (vertices, triangles) = surface(points)?;
+        let (vertices, triangles) = triangulate(points)?;
         around_all(vertices, &triangles)
     };
-    let made_round = || {
-        let rounded = round(points)?;
-        let (vertices, triangles) = surface(&rounded).ok()?;
-        around_all(originals(points, &rounded, &vertices), &triangles).ok()
+    let after_whitening = || {
+        let whitened = whiten(points)?;
+        let (vertices, triangles) = triangulate(&whitened).ok()?;
+        around_all(unwhiten(points, &whitened, &vertices), &triangles).ok()
     };
-    as_it_is().or_else(|error| made_round().ok_or(error))
+    as_it_is().or_else(|error| after_whitening().ok_or(error))
 }
 
-fn surface(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
+fn triangulate(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
     let (vertices, triangles) =
         parry3d::transformation::try_convex_hull(points).map_err(|_| HullError::BuilderFailed)?;
     // Of points on a line the builder keeps the ends.
@@ -52,10 +52,10 @@ fn surface(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
 }
 
 /// Whether one of the points is outside of a hull that is thin: of others the builder leaves none out.
-fn leaves_out(hull: &Hull, points: &[Vec3]) -> bool {
+fn misses_points(hull: &Hull, points: &[Vec3]) -> bool {
     let faces = || 0..hull.face_count() as FaceId;
     let height = |face, p: DVec3| hull.face_normal(face).dot(p) - hull.face_offset(face);
-    let thick = THICK * hull.radius();
+    let thick = MIN_TRUSTED_THICKNESS * hull.radius();
     let is_thin = faces().any(|face| -height(face, hull.center()) < thick);
     if !is_thin {
         return false;
@@ -64,13 +64,13 @@ fn leaves_out(hull: &Hull, points: &[Vec3]) -> bool {
     let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
     let vertices: HashSet<_> = hull.points().iter().map(bits).collect();
     let is_outside =
-        |p: &Vec3| faces().any(|face| height(face, p.as_dvec3()) > LEFT_OUT * hull.radius());
+        |p: &Vec3| faces().any(|face| height(face, p.as_dvec3()) > MAX_LEFT_OUT * hull.radius());
     let mut others = points.iter().filter(|p| !vertices.contains(&bits(p)));
     others.any(is_outside)
 }
 
 /// An affine image of the points with unit covariance; `None` if they span no volume.
-fn round(points: &[Vec3]) -> Option<Vec<Vec3>> {
+fn whiten(points: &[Vec3]) -> Option<Vec<Vec3>> {
     let count = points.len() as f64;
     let exact = || points.iter().map(|p| p.as_dvec3());
     let center = exact().sum::<DVec3>() / count;
@@ -78,7 +78,7 @@ fn round(points: &[Vec3]) -> Option<Vec<Vec3>> {
     let covariance = exact().fold(DMat3::ZERO, |sum, p| sum + outer(p - center)) * count.recip();
     let [x, y, z] = [covariance.x_axis, covariance.y_axis, covariance.z_axis];
     // Cholesky's factor of the covariance, column by column; its inverse undoes the covariance.
-    let least = THINNEST * THINNEST * (x.x + y.y + z.z);
+    let least = MIN_EXTENT * MIN_EXTENT * (x.x + y.y + z.z);
     let root = |pivot: f64| (pivot > least).then(|| pivot.sqrt());
     let xx = root(x.x)?;
     let (xy, xz) = (x.y / xx, x.z / xx);
@@ -96,7 +96,7 @@ fn round(points: &[Vec3]) -> Option<Vec<Vec3>> {
 }
 
 /// The points whose images the builder chose as vertices.
-fn originals(points: &[Vec3], images: &[Vec3], chosen: &[Vec3]) -> Vec<Vec3> {
+fn unwhiten(points: &[Vec3], images: &[Vec3], chosen: &[Vec3]) -> Vec<Vec3> {
     let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
     let of_image: HashMap<_, _> = images.iter().map(bits).zip(points).collect();
     chosen

@@ -8,7 +8,7 @@ use std::fmt;
 pub enum HullError {
     /// Fewer than four points.
     TooFewPoints,
-    /// More than 32,768 vertices: the faces between them must have 16-bit names. Points inside of the hull
+    /// More than 32,768 vertices: the faces between them must have 16-bit ids. Points inside of the hull
     /// do not count.
     TooManyPoints,
     /// The point with this index has a NaN or infinite coordinate.

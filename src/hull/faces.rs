@@ -5,26 +5,26 @@ use std::{iter, mem};
 
 use glam::{DVec3, Vec3};
 
-use super::caps::{self, Caps};
-use super::graph::{EdgeGraph, edge_at};
-use super::surface::{HalfEdge, Surface, next, triangle};
+use super::caps::{self, FaceClusters};
+use super::graph::{EdgeGraph, pack_edge};
+use super::surface::{HalfEdge, HalfEdgeMesh, next, triangle};
 use crate::support::FaceId;
-use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, SLIVER};
+use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, MIN_TRIANGLE_HEIGHT};
 
-/// The faces and, after them, the outlines of the caps.
+/// The faces and, after them, the outlines of the clusters.
 #[derive(Clone, Debug)]
 pub(super) struct Faces {
     /// With one more to end the last one's corners.
-    polygons: Box<[Polygon]>,
+    polygons: Box<[FaceRecord]>,
     count: usize,
-    corners: Box<[Corner]>,
-    caps: Caps,
+    corners: Box<[FaceCorner]>,
+    clusters: FaceClusters,
 }
 
 /// A face with its supporting plane, or an outline. What is read together lies together: large
 /// hulls are not in the nearest cache.
 #[derive(Clone, Copy, Debug)]
-struct Polygon {
+struct FaceRecord {
     /// Rounded to f32; the offset is exact for that normal.
     normal: Vec3,
     /// Its first corner; the others follow up to the next polygon's first. With a mark.
@@ -32,30 +32,30 @@ struct Polygon {
     offset: f64,
 }
 
-/// The mark of a face that belongs to a cap, so that of the others, which are most, nothing more need be
+/// The mark of a face that belongs to a cluster, so that of the others, which are most, nothing more need be
 /// read. No hull has so many corners.
-const IN_CAP: u32 = 1 << 31;
+const IN_CLUSTER: u32 = 1 << 31;
 
-impl Polygon {
+impl FaceRecord {
     #[inline]
     fn first(&self) -> usize {
-        (self.first & !IN_CAP) as usize
+        (self.first & !IN_CLUSTER) as usize
     }
 }
 
 /// A corner of a polygon.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Corner {
+pub(super) struct FaceCorner {
     pub vertex: u16,
-    /// Of the side that starts here, what the name of that edge has beside its lower vertex.
-    place: u16,
+    /// Of the side that starts here, what the id of that edge has beside its lower vertex.
+    slot: u16,
 }
 
 /// The side of an outline that cuts across faces.
 const NO_EDGE: u16 = u16::MAX;
 
 /// What became of triangles.
-pub(super) struct Joined {
+pub(super) struct MergedFaces {
     /// The face that each of them went to.
     pub face_of: Vec<u16>,
     /// The faces by their largest triangles.
@@ -63,12 +63,12 @@ pub(super) struct Joined {
 }
 
 /// A supporting plane.
-struct Plane {
+struct FacePlane {
     normal: Vec3,
     offset: f64,
 }
 
-impl Plane {
+impl FacePlane {
     /// That of a sliver whose direction is rounding only: no plane of the hull, and farther out
     /// than any. Outlines have none either.
     const NONE: Self = Self {
@@ -78,17 +78,17 @@ impl Plane {
 
     /// Through the outermost of the polygon's corners and their neighbours: on a convex hull no
     /// vertex is farther out.
-    fn new(points: &[DVec3], surface: &Surface<'_>, polygon: &[HalfEdge], radius: f64) -> Self {
-        let normal = polygon_normal(points, surface, polygon).as_vec3();
+    fn new(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, polygon: &[HalfEdge], radius: f64) -> Self {
+        let normal = polygon_normal(points, mesh, polygon).as_vec3();
         let direction = normal.as_dvec3();
         let height = |v: u32| direction.dot(points[v as usize]);
         let (mut lowest, mut offset) = (f64::INFINITY, f64::NEG_INFINITY);
         for &side in polygon {
-            let corner = surface.start(side);
+            let corner = mesh.start(side);
             let level = height(corner);
             lowest = lowest.min(level);
             offset = offset.max(level);
-            for side in surface.leaving(corner) {
+            for side in mesh.outgoing(corner) {
                 let level = height(side.to.into());
                 // No value is NaN here, so the NaN check of `f64::max` is not needed.
                 offset = if level > offset { level } else { offset };
@@ -105,9 +105,9 @@ impl Plane {
 impl Faces {
     /// Joins the triangles of a surface. The faces are in the order of their first triangles, so that
     /// those around a vertex lie together where triangles do.
-    pub fn new(points: &[DVec3], surface: &Surface<'_>, radius: f64) -> (Self, Joined) {
-        let count = surface.triangles.len();
-        let regions = Regions::grow(points, surface, radius);
+    pub fn new(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, radius: f64) -> (Self, MergedFaces) {
+        let count = mesh.triangles.len();
+        let regions = CoplanarRegions::grow(points, mesh, radius);
         let mut face_of = vec![0_u16; count];
         let mut faces = Builder::with_capacity(count);
         let mut faces_of = vec![0..0; regions.len()];
@@ -115,11 +115,11 @@ impl Faces {
             for &t in triangles {
                 face_of[t as usize] = faces.polygons.len() as u16;
             }
-            let corner = |&side: &HalfEdge| Corner {
-                vertex: surface.start(side) as u16,
-                place: surface.edge_place(side),
+            let corner = |&side: &HalfEdge| FaceCorner {
+                vertex: mesh.start(side) as u16,
+                slot: mesh.edge_slot(side),
             };
-            let plane = Plane::new(points, surface, polygon, radius);
+            let plane = FacePlane::new(points, mesh, polygon, radius);
             faces.add(&plane, polygon.iter().map(corner));
         };
         let mut polygon = Vec::new();
@@ -129,11 +129,11 @@ impl Faces {
                 continue;
             }
             let region = regions.triangles(r as usize);
-            let joined = region.len() > 1
-                && regions.boundary(surface, region, &mut polygon)
-                && is_convex(points, surface, &polygon, radius);
+            let merged = region.len() > 1
+                && regions.boundary(mesh, region, &mut polygon)
+                && is_convex(points, mesh, &polygon, radius);
             let first = face_count;
-            if joined {
+            if merged {
                 add(&polygon, region);
                 face_count += 1;
             } else {
@@ -145,17 +145,20 @@ impl Faces {
             }
             faces_of[r as usize] = first..face_count;
         }
-        let joined = Joined {
+        let merged = MergedFaces {
             face_of,
             largest_first: faces_of.into_iter().flatten().collect(),
         };
-        (faces.finish(face_count.into(), Caps::default()), joined)
+        (
+            faces.finish(face_count.into(), FaceClusters::default()),
+            merged,
+        )
     }
 
-    /// Finds the caps, when the `graph` knows the faces.
-    pub fn add_caps(&mut self, points: &[DVec3], graph: &EdgeGraph, joined: &Joined) {
-        let caps = caps::grow(points, self, graph, &joined.largest_first);
-        if caps.is_empty() {
+    /// Finds the clusters, when the `graph` knows the faces.
+    pub fn add_clusters(&mut self, points: &[DVec3], graph: &EdgeGraph, merged: &MergedFaces) {
+        let clusters = caps::grow_clusters(points, self, graph, &merged.largest_first);
+        if clusters.is_empty() {
             return;
         }
         let mut faces = Builder {
@@ -163,18 +166,21 @@ impl Faces {
             corners: mem::take(&mut self.corners).into_vec(),
         };
         faces.polygons.pop();
-        for cap in &caps {
-            for &member in &cap.members {
-                faces.polygons[usize::from(member)].first |= IN_CAP;
+        for cluster in &clusters {
+            for &member in &cluster.members {
+                faces.polygons[usize::from(member)].first |= IN_CLUSTER;
             }
-            let ends = cap.outline.iter().cycle().skip(1);
-            let corner = |(&from, &to): (&u16, &u16)| Corner {
+            let ends = cluster.outline.iter().cycle().skip(1);
+            let corner = |(&from, &to): (&u16, &u16)| FaceCorner {
                 vertex: from,
-                place: graph.edge_place(from.into(), to.into()).unwrap_or(NO_EDGE),
+                slot: graph.edge_slot(from.into(), to.into()).unwrap_or(NO_EDGE),
             };
-            faces.add(&Plane::NONE, cap.outline.iter().zip(ends).map(corner));
+            faces.add(
+                &FacePlane::NONE,
+                cluster.outline.iter().zip(ends).map(corner),
+            );
         }
-        *self = faces.finish(self.count, Caps::new(&caps, self.count));
+        *self = faces.finish(self.count, FaceClusters::new(&clusters, self.count));
     }
 
     pub fn len(&self) -> usize {
@@ -193,28 +199,28 @@ impl Faces {
 
     /// The corners of a face or of an outline.
     #[inline]
-    pub fn polygon(&self, face: FaceId) -> &[Corner] {
+    pub fn polygon(&self, face: FaceId) -> &[FaceCorner] {
         let f = face as usize;
         &self.corners[self.polygons[f].first()..self.polygons[f + 1].first()]
     }
 
-    /// The name of the `i`-th edge of a face, or of an outline where that is an edge.
+    /// The id of the `i`-th edge of a face, or of an outline where that is an edge.
     #[inline]
     pub fn edge(&self, face: FaceId, i: usize) -> Option<u32> {
         let corners = self.polygon(face);
-        let Corner { vertex, place } = corners[i];
+        let FaceCorner { vertex, slot } = corners[i];
         let next = corners[if i + 1 < corners.len() { i + 1 } else { 0 }].vertex;
-        (place != NO_EDGE).then(|| edge_at(vertex.min(next).into(), place))
+        (slot != NO_EDGE).then(|| pack_edge(vertex.min(next).into(), slot))
     }
 
-    /// The cap around a face: the name of its outline, and the faces under that.
+    /// The cluster around a face: the id of its outline, and the faces under that.
     #[inline]
-    pub fn cap(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
-        if self.polygons[face as usize].first & IN_CAP == 0 {
+    pub fn cluster(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
+        if self.polygons[face as usize].first & IN_CLUSTER == 0 {
             return None;
         }
-        let (cap, faces) = self.caps.around(face);
-        Some(((self.len() + cap) as FaceId, faces))
+        let (cluster, faces) = self.clusters.containing(face);
+        Some(((self.len() + cluster) as FaceId, faces))
     }
 
     /// Of these faces the one that looks most in direction `dir`.
@@ -238,14 +244,14 @@ impl Faces {
     }
 
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.polygons) + size_of_val(&*self.corners) + self.caps.heap_bytes()
+        size_of_val(&*self.polygons) + size_of_val(&*self.corners) + self.clusters.heap_bytes()
     }
 }
 
 /// Polygons one after the other.
 struct Builder {
-    polygons: Vec<Polygon>,
-    corners: Vec<Corner>,
+    polygons: Vec<FaceRecord>,
+    corners: Vec<FaceCorner>,
 }
 
 impl Builder {
@@ -256,8 +262,8 @@ impl Builder {
         }
     }
 
-    fn add(&mut self, plane: &Plane, corners: impl Iterator<Item = Corner>) {
-        self.polygons.push(Polygon {
+    fn add(&mut self, plane: &FacePlane, corners: impl Iterator<Item = FaceCorner>) {
+        self.polygons.push(FaceRecord {
             normal: plane.normal,
             first: self.corners.len() as u32,
             offset: plane.offset,
@@ -265,14 +271,14 @@ impl Builder {
         self.corners.extend(corners);
     }
 
-    /// The first `count` polygons are faces, the others outlines of caps.
-    fn finish(mut self, count: usize, caps: Caps) -> Faces {
-        self.add(&Plane::NONE, iter::empty());
+    /// The first `count` polygons are faces, the others outlines of clusters.
+    fn finish(mut self, count: usize, clusters: FaceClusters) -> Faces {
+        self.add(&FacePlane::NONE, iter::empty());
         Faces {
             polygons: self.polygons.into(),
             count,
             corners: self.corners.into(),
-            caps,
+            clusters,
         }
     }
 }
@@ -289,8 +295,8 @@ pub(super) fn longest_side(points: &[DVec3], triangle: [u32; 3]) -> f64 {
 }
 
 /// The area vector of a polygon, normalised (Newell's method, about its first vertex).
-fn polygon_normal(points: &[DVec3], surface: &Surface<'_>, polygon: &[HalfEdge]) -> DVec3 {
-    let at = |i: usize| points[surface.start(polygon[i]) as usize];
+fn polygon_normal(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, polygon: &[HalfEdge]) -> DVec3 {
+    let at = |i: usize| points[mesh.start(polygon[i]) as usize];
     let origin = at(0);
     let sum: DVec3 = (1..polygon.len() - 1)
         .map(|i| (at(i) - origin).cross(at(i + 1) - origin))
@@ -299,7 +305,7 @@ fn polygon_normal(points: &[DVec3], surface: &Surface<'_>, polygon: &[HalfEdge])
 }
 
 /// Sets of triangles that lie in one plane each.
-struct Regions {
+struct CoplanarRegions {
     /// The triangles, region by region, and where the regions begin.
     triangles: Vec<u32>,
     first: Vec<usize>,
@@ -310,10 +316,10 @@ struct Regions {
 /// In no region yet.
 const FREE: u32 = u32::MAX;
 
-impl Regions {
+impl CoplanarRegions {
     /// Grows from the largest triangles, whose normals are the most reliable.
-    fn grow(points: &[DVec3], surface: &Surface<'_>, radius: f64) -> Self {
-        let triangles = surface.triangles;
+    fn grow(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, radius: f64) -> Self {
+        let triangles = mesh.triangles;
         let vectors: Vec<DVec3> = triangles.iter().map(|&t| area_vector(points, t)).collect();
         let areas: Vec<f64> = vectors.iter().map(|vector| vector.length()).collect();
         // The bits of numbers that are not negative are in their order.
@@ -332,7 +338,9 @@ impl Regions {
             move |t: usize| {
                 // The direction of a sliver is rounding only; its neighbours decide.
                 let turned = normal.dot(vectors[t]) < FACE_ANGLE_COS * areas[t];
-                let sliver = || areas[t] <= SLIVER * radius * longest_side(points, triangles[t]);
+                let sliver = || {
+                    areas[t] <= MIN_TRIANGLE_HEIGHT * radius * longest_side(points, triangles[t])
+                };
                 let height = |v: u32| normal.dot(points[v as usize] - center);
                 let flat = |&v: &u32| height(v).abs() <= FACE_FLATNESS * radius;
                 (!turned || sliver()) && triangles[t].iter().all(flat)
@@ -342,25 +350,25 @@ impl Regions {
             if regions.of[seed as usize] != FREE {
                 continue;
             }
-            regions.add(surface, seed, joins(&[seed]));
+            regions.add(mesh, seed, joins(&[seed]));
             // The corners of a small triangle are rounded, so its plane leaves a large side at the
             // far end. The plane of all triangles that it found there does not.
             if let Some(found) = regions.take_back() {
-                regions.add(surface, seed, joins(&found));
+                regions.add(mesh, seed, joins(&found));
             }
         }
         regions
     }
 
     /// A new region: the triangles that hang together with `seed` and join it.
-    fn add(&mut self, surface: &Surface<'_>, seed: u32, joins: impl Fn(usize) -> bool) {
+    fn add(&mut self, mesh: &HalfEdgeMesh<'_>, seed: u32, joins: impl Fn(usize) -> bool) {
         let region = self.len() as u32;
         let mut at = self.triangles.len();
         self.of[seed as usize] = region;
         self.triangles.push(seed);
         while let Some(&t) = self.triangles.get(at) {
             for side in 3 * t..3 * t + 3 {
-                let other = triangle(surface.twin(side));
+                let other = triangle(mesh.twin(side));
                 if self.of[other] == FREE && joins(other) {
                     self.of[other] = region;
                     self.triangles.push(other as u32);
@@ -395,9 +403,14 @@ impl Regions {
     }
 
     /// Leaves the sides around a region in `polygon`; `false` if they are not one loop.
-    fn boundary(&self, surface: &Surface<'_>, region: &[u32], polygon: &mut Vec<HalfEdge>) -> bool {
+    fn boundary(
+        &self,
+        mesh: &HalfEdgeMesh<'_>,
+        region: &[u32],
+        polygon: &mut Vec<HalfEdge>,
+    ) -> bool {
         let inner = |side: HalfEdge| {
-            let [here, beyond] = [side, surface.twin(side)].map(|h| self.of[triangle(h)]);
+            let [here, beyond] = [side, mesh.twin(side)].map(|h| self.of[triangle(h)]);
             here == beyond
         };
         let sides = region.iter().flat_map(|&t| 3 * t..3 * t + 3);
@@ -411,7 +424,7 @@ impl Regions {
             polygon.push(side);
             side = next(side);
             while inner(side) {
-                side = next(surface.twin(side));
+                side = next(mesh.twin(side));
             }
             if side == start {
                 return polygon.len() == 1 + outer.count();
@@ -442,10 +455,10 @@ fn plane(
 }
 
 /// Whether no corner is a dent, beyond rounding.
-fn is_convex(points: &[DVec3], surface: &Surface<'_>, polygon: &[HalfEdge], radius: f64) -> bool {
-    let normal = polygon_normal(points, surface, polygon);
+fn is_convex(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, polygon: &[HalfEdge], radius: f64) -> bool {
+    let normal = polygon_normal(points, mesh, polygon);
     let count = polygon.len();
-    let at = |i: usize| points[surface.start(polygon[i % count]) as usize];
+    let at = |i: usize| points[mesh.start(polygon[i % count]) as usize];
     (0..count).all(|i| {
         let (before, here, after) = (at(i), at(i + 1), at(i + 2));
         let chord = after - before;

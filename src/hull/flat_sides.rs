@@ -1,12 +1,12 @@
 //! Flat sides in a triangulation of our own, so that a hull does not depend on the one it came in.
 //!
-//! A flat side is a polygon whose triangulation says nothing about the shape, but names of edges depend
+//! A flat side is a polygon whose triangulation says nothing about the shape, but ids of edges depend
 //! on it. If it is another one whenever a shape is made anew, a prepared hull must be told from it edge
 //! by edge.
 
 use glam::DVec3;
 
-use super::surface::{HalfEdge, Surface, next};
+use super::surface::{HalfEdge, HalfEdgeMesh, next};
 use crate::tolerance::{BENT_EDGE, FLAT_EDGE, FLAT_SIDE};
 
 /// The triangles of a surface, in an order and over diagonals that depend on its vertices only. `None`
@@ -16,8 +16,8 @@ pub(super) fn retriangulated(
     triangles: &[[u32; 3]],
     radius: f64,
 ) -> Option<Vec<[u32; 3]>> {
-    let surface = Surface::new(points.len(), triangles).ok()?;
-    let sides = Sides::new(points, &surface, radius)?;
+    let mesh = HalfEdgeMesh::new(points.len(), triangles).ok()?;
+    let sides = Sides::new(points, &mesh, radius)?;
     let mut all: Vec<[u32; 3]> = sides
         .polygons
         .iter()
@@ -30,31 +30,31 @@ pub(super) fn retriangulated(
 /// The polygons that a surface consists of.
 struct Sides<'a> {
     points: &'a [DVec3],
-    surface: &'a Surface<'a>,
+    mesh: &'a HalfEdgeMesh<'a>,
     radius: f64,
     polygons: Vec<Vec<u32>>,
     /// Of each half-edge between polygons: the unit normal of its polygon, and how far beside it the
     /// nearest other corner is.
     borders: Vec<(DVec3, f64)>,
     /// Of each corner of the polygon at hand, the half-edge around it that starts there.
-    leaving: Vec<HalfEdge>,
+    outgoing: Vec<HalfEdge>,
 }
 
 impl<'a> Sides<'a> {
-    fn new(points: &'a [DVec3], surface: &'a Surface<'a>, radius: f64) -> Option<Self> {
-        let half_edges = 3 * surface.triangles.len();
+    fn new(points: &'a [DVec3], mesh: &'a HalfEdgeMesh<'a>, radius: f64) -> Option<Self> {
+        let half_edges = 3 * mesh.triangles.len();
         let mut sides = Self {
             points,
-            surface,
+            mesh,
             radius,
-            polygons: Vec::with_capacity(surface.triangles.len()),
+            polygons: Vec::with_capacity(mesh.triangles.len()),
             borders: vec![(DVec3::ZERO, 0.0); half_edges],
-            leaving: vec![0; points.len()],
+            outgoing: vec![0; points.len()],
         };
         let is_flat: Vec<bool> = (0..half_edges as HalfEdge)
             .map(|h| sides.is_flat(h))
             .collect();
-        let mut seen = vec![false; surface.triangles.len()];
+        let mut seen = vec![false; mesh.triangles.len()];
         for t in 0..seen.len() {
             if !seen[t] {
                 sides.add(t, &is_flat, &mut seen)?;
@@ -65,14 +65,14 @@ impl<'a> Sides<'a> {
     }
 
     fn along(&self, h: HalfEdge) -> DVec3 {
-        self.points[self.surface.end(h) as usize] - self.points[self.surface.start(h) as usize]
+        self.points[self.mesh.end(h) as usize] - self.points[self.mesh.start(h) as usize]
     }
 
     /// Whether the surface hardly bends at an edge.
     fn is_flat(&self, h: HalfEdge) -> bool {
-        let from = self.points[self.surface.start(h) as usize];
-        let third = |h| self.points[self.surface.end(next(h)) as usize] - from;
-        let twin = self.surface.twin(h);
+        let from = self.points[self.mesh.start(h) as usize];
+        let third = |h| self.points[self.mesh.end(next(h)) as usize] - from;
+        let twin = self.mesh.twin(h);
         let (before, after) = (
             third(twin).cross(self.along(h)),
             self.along(h).cross(third(h)),
@@ -89,7 +89,7 @@ impl<'a> Sides<'a> {
         while let Some(t) = stack.pop() {
             count += 1;
             for h in 3 * t as HalfEdge..3 * t as HalfEdge + 3 {
-                let beside = self.surface.twin(h) as usize / 3;
+                let beside = self.mesh.twin(h) as usize / 3;
                 if !is_flat[h as usize] {
                     border.push(h);
                 } else if !std::mem::replace(&mut seen[beside], true) {
@@ -102,7 +102,7 @@ impl<'a> Sides<'a> {
             return None;
         }
         self.sort(&mut border)?;
-        let polygon: Vec<u32> = border.iter().map(|&h| self.surface.start(h)).collect();
+        let polygon: Vec<u32> = border.iter().map(|&h| self.mesh.start(h)).collect();
         let corner = |i: usize| self.points[polygon[i % polygon.len()] as usize];
         let fan = (1..polygon.len() - 1)
             .map(|i| (corner(i) - corner(0)).cross(corner(i + 1) - corner(0)));
@@ -128,14 +128,14 @@ impl<'a> Sides<'a> {
     /// Sorts the border of a polygon, counter-clockwise from the lowest corner on.
     fn sort(&mut self, border: &mut [HalfEdge]) -> Option<()> {
         for &h in &*border {
-            self.leaving[self.surface.start(h) as usize] = h;
+            self.outgoing[self.mesh.start(h) as usize] = h;
         }
-        let first = *border.iter().min_by_key(|&&h| self.surface.start(h))?;
+        let first = *border.iter().min_by_key(|&&h| self.mesh.start(h))?;
         let mut h = first;
         let count = border.len();
         for (i, place) in border.iter_mut().enumerate() {
             *place = h;
-            h = self.leaving[self.surface.end(h) as usize];
+            h = self.outgoing[self.mesh.end(h) as usize];
             // A border that touches itself comes back too early.
             if (h == first) != (i + 1 == count) {
                 return None;
@@ -147,7 +147,7 @@ impl<'a> Sides<'a> {
     /// Whether the surface bends between two polygons, whatever triangles they are made of.
     fn bends(&self, h: HalfEdge) -> bool {
         let [(here, nearest_here), (there, nearest_there)] =
-            [h, self.surface.twin(h)].map(|h| self.borders[h as usize]);
+            [h, self.mesh.twin(h)].map(|h| self.borders[h as usize]);
         let nearest = nearest_here.min(nearest_there);
         nearest * here.cross(there).length() > BENT_EDGE * self.radius
     }

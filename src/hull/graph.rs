@@ -2,54 +2,54 @@
 
 use std::{array, iter};
 
-use super::surface::{Side, Surface, triangle};
+use super::surface::{DirectedEdge, HalfEdgeMesh, triangle};
 use crate::support::VertexId;
 
-/// An edge is named by its lower vertex, above this many bits, and its place among that vertex's
-/// neighbours. With at most 2^15 vertices the name has 30 bits, as parry's packed feature ids do.
-const PLACE_BITS: u32 = 15;
+/// The id of an edge is its lower vertex, above this many bits, and its slot among that vertex's
+/// neighbours. With at most 2^15 vertices the id has 30 bits, as parry's packed feature ids do.
+const SLOT_BITS: u32 = 15;
 
 /// The neighbours of each vertex.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(super) struct EdgeGraph {
     /// The first neighbours of each vertex, which of most vertices are all.
-    stars: Box<[Star]>,
+    blocks: Box<[NeighborBlock]>,
     /// Those after them, in no order that matters.
-    more: Box<[Star]>,
+    overflow: Box<[NeighborBlock]>,
 }
 
 /// Neighbours of a vertex, clockwise seen from outside. Unused slots repeat the first
-/// neighbour, which comes after the last one. Where there are more, the last one is also the first in the next star.
+/// neighbour, which comes after the last one. Where there are more, the last one is also the first in the next block.
 ///
 /// Each vertex has one, so that it is found without another look into memory; and by its alignment
 /// it is on one line of the cache.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
-pub(super) struct Star {
+pub(super) struct NeighborBlock {
     /// Ids of vertices; the highest bits of the first two are marks.
-    to: [u16; STAR],
+    to: [u16; BLOCK],
     /// The face left of the edge to each of them. Right of it is that left of the next one. Where there
-    /// are more neighbours, the last one is no face, but where their star is.
-    left: [u16; STAR],
+    /// are more neighbours, the last one is no face, but where their block is.
+    left: [u16; BLOCK],
 }
 
 /// On a triangulated surface each vertex has six neighbours on the average.
-const STAR: usize = 8;
+const BLOCK: usize = 8;
 
 /// A bit that no id of a vertex has.
 const MARK: u16 = 1 << 15;
 /// The neighbour whose mark says that at this vertex a tie must be looked into.
-const FRAGILE: usize = 0;
-/// The neighbour whose mark says that there are more of them in another star.
-const CROWDED: usize = 1;
-/// The last place of a star, and how many neighbours it has that the next one has not.
-pub(super) const LAST: usize = STAR - 1;
+const PLATEAU_SEARCH: usize = 0;
+/// The neighbour whose mark says that there are more of them in another block.
+const OVERFLOW: usize = 1;
+/// The last slot of a block, and how many neighbours it has that the next one has not.
+pub(super) const LAST: usize = BLOCK - 1;
 
-impl Star {
+impl NeighborBlock {
     /// From the sides that leave a vertex, of which the `first` is to fill up with.
-    fn new(sides: &[Side], first: &Side, face_of: &[u16]) -> Self {
-        let sides: [&Side; STAR] = array::from_fn(|i| sides.get(i).unwrap_or(first));
+    fn new(sides: &[DirectedEdge], first: &DirectedEdge, face_of: &[u16]) -> Self {
+        let sides: [&DirectedEdge; BLOCK] = array::from_fn(|i| sides.get(i).unwrap_or(first));
         Self {
             to: sides.map(|side| side.to),
             left: sides.map(|side| face_of[triangle(side.half_edge)]),
@@ -57,38 +57,38 @@ impl Star {
     }
 
     /// With others after it.
-    fn with_more(mut self, place: usize) -> Self {
-        self.to[CROWDED] |= MARK;
-        self.left[LAST] = place as u16;
+    fn with_overflow(mut self, slot: usize) -> Self {
+        self.to[OVERFLOW] |= MARK;
+        self.left[LAST] = slot as u16;
         self
     }
 
     /// The neighbours.
     #[inline(always)]
-    pub fn to(&self) -> [u16; STAR] {
+    pub fn to(&self) -> [u16; BLOCK] {
         let mut to = self.to;
-        to[FRAGILE] &= !MARK;
-        to[CROWDED] &= !MARK;
+        to[PLATEAU_SEARCH] &= !MARK;
+        to[OVERFLOW] &= !MARK;
         to
     }
 
     /// Whether a climb must look into ties at this vertex.
     #[inline(always)]
-    pub fn is_fragile(&self) -> bool {
-        self.to[FRAGILE] & MARK != 0
+    pub fn needs_plateau_search(&self) -> bool {
+        self.to[PLATEAU_SEARCH] & MARK != 0
     }
 
     /// Whether the vertex has others after these.
     #[inline(always)]
-    pub fn is_crowded(&self) -> bool {
-        self.to[CROWDED] & MARK != 0
+    pub fn has_overflow(&self) -> bool {
+        self.to[OVERFLOW] & MARK != 0
     }
 
     /// The faces left of the edges to them, but for the last one where there are others after it.
     #[inline(always)]
-    fn left(&self) -> [u16; STAR] {
+    fn left(&self) -> [u16; BLOCK] {
         let mut left = self.left;
-        if self.is_crowded() {
+        if self.has_overflow() {
             left[LAST] = left[0];
         }
         left
@@ -97,152 +97,156 @@ impl Star {
 
 impl EdgeGraph {
     /// From a surface whose triangles went to the faces `face_of`.
-    pub fn new(surface: &Surface<'_>, face_of: &[u16]) -> Self {
-        let mut more = Vec::new();
-        let stars = (0..surface.vertex_count()).map(|v| {
-            let around = surface.leaving(v as u32);
-            let star = |sides| Star::new(sides, &around[0], face_of);
+    pub fn new(mesh: &HalfEdgeMesh<'_>, face_of: &[u16]) -> Self {
+        let mut overflow = Vec::new();
+        let blocks = (0..mesh.vertex_count()).map(|v| {
+            let around = mesh.outgoing(v as u32);
+            let block = |sides| NeighborBlock::new(sides, &around[0], face_of);
             // From the last one on, so that each knows where the next is.
             let last = (around.len() - 2) / LAST;
             (1..=last)
                 .rev()
-                .fold(star(&around[last * LAST..]), |after, number| {
-                    more.push(after);
-                    let sides = &around[(number - 1) * LAST..][..STAR];
-                    star(sides).with_more(more.len() - 1)
+                .fold(block(&around[last * LAST..]), |after, number| {
+                    overflow.push(after);
+                    let sides = &around[(number - 1) * LAST..][..BLOCK];
+                    block(sides).with_overflow(overflow.len() - 1)
                 })
         });
         Self {
-            stars: stars.collect(),
-            more: more.into(),
+            blocks: blocks.collect(),
+            overflow: overflow.into(),
         }
     }
 
     /// Marks the vertices at which a climb must look into ties.
-    pub fn mark_fragile(&mut self, is_fragile: impl Fn(&Self, VertexId) -> bool) {
-        for v in 0..self.stars.len() {
-            if is_fragile(self, v as VertexId) {
-                self.stars[v].to[FRAGILE] |= MARK;
+    pub fn mark_plateau_search(&mut self, needs_plateau_search: impl Fn(&Self, VertexId) -> bool) {
+        for v in 0..self.blocks.len() {
+            if needs_plateau_search(self, v as VertexId) {
+                self.blocks[v].to[PLATEAU_SEARCH] |= MARK;
             }
         }
     }
 
-    /// The first star of a vertex.
+    /// The first block of a vertex.
     #[inline(always)]
-    pub fn star(&self, vertex: VertexId) -> &Star {
-        &self.stars[vertex as usize]
+    pub fn block(&self, vertex: VertexId) -> &NeighborBlock {
+        &self.blocks[vertex as usize]
     }
 
-    /// The star after this one, if there are more neighbours.
+    /// The block after this one, if there are more neighbours.
     #[inline(always)]
-    pub fn after(&self, star: &Star) -> Option<&Star> {
-        star.is_crowded()
-            .then(|| &self.more[usize::from(star.left[LAST])])
+    pub fn next_block(&self, block: &NeighborBlock) -> Option<&NeighborBlock> {
+        block
+            .has_overflow()
+            .then(|| &self.overflow[usize::from(block.left[LAST])])
     }
 
-    /// A star and those after it.
+    /// A block and those after it.
     #[inline(always)]
-    pub fn stars_from<'a>(&'a self, star: &'a Star) -> impl Iterator<Item = &'a Star> + Clone {
-        iter::successors(Some(star), |star| self.after(star))
+    pub fn blocks_from<'a>(
+        &'a self,
+        block: &'a NeighborBlock,
+    ) -> impl Iterator<Item = &'a NeighborBlock> + Clone {
+        iter::successors(Some(block), |block| self.next_block(block))
     }
 
     #[inline(always)]
-    fn stars(&self, vertex: VertexId) -> impl Iterator<Item = &Star> + Clone {
-        self.stars_from(self.star(vertex))
+    fn blocks(&self, vertex: VertexId) -> impl Iterator<Item = &NeighborBlock> + Clone {
+        self.blocks_from(self.block(vertex))
     }
 
-    /// The star with this place, and the place in it; there may be neither vertex nor place.
+    /// The block with this slot, and the slot in it; there may be neither vertex nor slot.
     #[inline(always)]
-    fn find(&self, vertex: VertexId, mut place: usize) -> Option<(&Star, usize)> {
-        let mut star = self.stars.get(vertex as usize)?;
-        while place >= LAST
-            && let Some(after) = self.after(star)
+    fn find(&self, vertex: VertexId, mut slot: usize) -> Option<(&NeighborBlock, usize)> {
+        let mut block = self.blocks.get(vertex as usize)?;
+        while slot >= LAST
+            && let Some(after) = self.next_block(block)
         {
-            star = after;
-            place -= LAST;
+            block = after;
+            slot -= LAST;
         }
-        (place < STAR).then_some((star, place))
+        (slot < BLOCK).then_some((block, slot))
     }
 
-    /// The neighbour in a place.
+    /// The neighbour in a slot.
     #[inline(always)]
-    pub fn neighbor(&self, vertex: VertexId, place: usize) -> Option<VertexId> {
-        let (star, place) = self.find(vertex, place)?;
-        Some((star.to[place] & !MARK).into())
+    pub fn neighbor(&self, vertex: VertexId, slot: usize) -> Option<VertexId> {
+        let (block, slot) = self.find(vertex, slot)?;
+        Some((block.to[slot] & !MARK).into())
     }
 
     /// The neighbours of a vertex; the first may be repeated.
     #[inline]
     pub fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = u16> {
-        self.stars(vertex).flat_map(Star::to)
+        self.blocks(vertex).flat_map(NeighborBlock::to)
     }
 
     /// The same in fours.
     #[inline]
     pub fn neighbors_in_fours(&self, vertex: VertexId) -> impl Iterator<Item = [VertexId; 4]> {
-        self.stars(vertex).flat_map(|star| {
-            let [a, b, c, d, e, f, g, h] = star.to();
+        self.blocks(vertex).flat_map(|block| {
+            let [a, b, c, d, e, f, g, h] = block.to();
             [[a, b, c, d], [e, f, g, h]].map(|four| four.map(VertexId::from))
         })
     }
 
     /// The faces around a vertex, some of them more than once.
     #[inline]
-    pub fn faces_at(&self, vertex: VertexId) -> impl Iterator<Item = [u16; STAR]> + Clone {
-        self.stars(vertex).map(Star::left)
+    pub fn faces_around(&self, vertex: VertexId) -> impl Iterator<Item = [u16; BLOCK]> + Clone {
+        self.blocks(vertex).map(NeighborBlock::left)
     }
 
-    /// The name of an edge, the same for both directions.
-    pub fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32> {
-        Some(edge_at(from.min(to), self.edge_place(from, to)?))
+    /// The id of an edge, the same for both directions.
+    pub fn edge_between(&self, from: VertexId, to: VertexId) -> Option<u32> {
+        Some(pack_edge(from.min(to), self.edge_slot(from, to)?))
     }
 
-    /// What the name of an edge has beside its lower vertex: its first place there. All are looked
+    /// What the id of an edge has beside its lower vertex: its first slot there. All are looked
     /// at: where a search would end is not predictable.
     #[inline]
-    pub fn edge_place(&self, from: VertexId, to: VertexId) -> Option<u16> {
+    pub fn edge_slot(&self, from: VertexId, to: VertexId) -> Option<u16> {
         const NONE: usize = usize::MAX;
         let (low, high) = (from.min(to), from.max(to));
-        let mut place = NONE;
-        for (s, star) in self.stars(low).enumerate() {
-            for (i, w) in star.to().into_iter().enumerate() {
-                let is_first = (VertexId::from(w) == high) & (place == NONE);
-                place = if is_first { s * LAST + i } else { place };
+        let mut slot = NONE;
+        for (s, block) in self.blocks(low).enumerate() {
+            for (i, w) in block.to().into_iter().enumerate() {
+                let is_first = (VertexId::from(w) == high) & (slot == NONE);
+                slot = if is_first { s * LAST + i } else { slot };
             }
         }
-        (place != NONE).then_some(place as u16)
+        (slot != NONE).then_some(slot as u16)
     }
 
     /// The end vertices of an edge.
     #[inline]
-    pub fn edge(&self, id: u32) -> Option<[VertexId; 2]> {
-        let (from, place) = split(id);
-        Some([from, self.neighbor(from, place)?])
+    pub fn edge_ends(&self, id: u32) -> Option<[VertexId; 2]> {
+        let (from, slot) = unpack_edge(id);
+        Some([from, self.neighbor(from, slot)?])
     }
 
     /// The faces on both sides of an edge.
     #[inline]
-    pub fn faces_beside(&self, id: u32) -> Option<[u16; 2]> {
-        let (from, place) = split(id);
-        let left = |place| self.find(from, place).map(|(star, place)| star.left[place]);
-        Some([left(place)?, left(place + 1).or_else(|| left(0))?])
+    pub fn faces_of_edge(&self, id: u32) -> Option<[u16; 2]> {
+        let (from, slot) = unpack_edge(id);
+        let left = |slot| self.find(from, slot).map(|(block, slot)| block.left[slot]);
+        Some([left(slot)?, left(slot + 1).or_else(|| left(0))?])
     }
 
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.stars) + size_of_val(&*self.more)
+        size_of_val(&*self.blocks) + size_of_val(&*self.overflow)
     }
 }
 
-/// The lower vertex of an edge, and its place there.
+/// The lower vertex of an edge, and its slot there.
 #[inline]
-fn split(id: u32) -> (VertexId, usize) {
-    (id >> PLACE_BITS, (id & ((1 << PLACE_BITS) - 1)) as usize)
+fn unpack_edge(id: u32) -> (VertexId, usize) {
+    (id >> SLOT_BITS, (id & ((1 << SLOT_BITS) - 1)) as usize)
 }
 
-/// The name of an edge from its lower vertex and its place there.
+/// The id of an edge from its lower vertex and its slot there.
 #[inline]
-pub(super) fn edge_at(low: VertexId, place: u16) -> u32 {
-    low << PLACE_BITS | u32::from(place)
+pub(super) fn pack_edge(low: VertexId, slot: u16) -> u32 {
+    low << SLOT_BITS | u32::from(slot)
 }
 
 #[cfg(test)]
@@ -277,7 +281,7 @@ mod tests {
             around.dedup();
             assert_eq!(around.len(), sides);
             for v in vertices {
-                let mut faces: Vec<u16> = hull.graph.faces_at(v).flatten().collect();
+                let mut faces: Vec<u16> = hull.graph.faces_around(v).flatten().collect();
                 faces.sort_unstable();
                 faces.dedup();
                 let has = |f: &u16, v| {
@@ -289,15 +293,15 @@ mod tests {
                     .collect();
                 assert_eq!(faces, all, "{sides} sides, around {v}");
                 for w in hull.graph.neighbors(v).map(VertexId::from) {
-                    let id = hull.edge_id(v, w).expect("neighbours have an edge");
-                    assert_eq!(hull.edge(id), Some([v.min(w), v.max(w)]));
-                    let mut beside = hull.graph.faces_beside(id).expect("an edge has faces");
+                    let id = hull.edge_between(v, w).expect("neighbours have an edge");
+                    assert_eq!(hull.edge_ends(id), Some([v.min(w), v.max(w)]));
+                    let mut beside = hull.graph.faces_of_edge(id).expect("an edge has faces");
                     beside.sort_unstable();
                     let both: Vec<u16> = all.iter().copied().filter(|f| has(f, w)).collect();
                     assert!(both == beside || beside[0] == beside[1] && both.contains(&beside[0]));
                 }
             }
-            let beyond = hull.points().len() + STAR;
+            let beyond = hull.points().len() + BLOCK;
             assert_eq!(hull.graph.neighbor(top, beyond), None);
             assert_eq!(hull.graph.neighbor(beyond as VertexId, 0), None);
         }

@@ -16,14 +16,14 @@ mod surface;
 mod top;
 pub(crate) mod topology;
 
-pub(crate) use cloud::surround;
+pub(crate) use cloud::hull_of_points;
 pub use error::HullError;
 
 use glam::{DVec3, Vec3};
 
 use crate::stats::Cost;
-use crate::support::{Corners, FaceId, Polytope, Support, VertexId};
-use climb::Slope;
+use crate::support::{FaceId, FacePoints, Polytope, Support, VertexId};
+use climb::HillClimb;
 use faces::Faces;
 use graph::EdgeGraph;
 use scan::Scan;
@@ -32,7 +32,7 @@ use start::StartTable;
 /// A convex polytope with everything precomputed that a query needs.
 ///
 /// Lengths are in the units of the points it was built from, positions in their frame.
-// In this order, and aligned, so that what proves most pairs apart is on one line of the cache: the ball, and
+// In this order, and aligned, so that what proves most pairs apart is on one line of the cache: the bounding sphere, and
 // where points and neighbours are.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
@@ -42,12 +42,12 @@ pub struct Hull {
     points: Box<[Vec3]>,
     graph: EdgeGraph,
     faces: Faces,
-    search: Search,
+    search: SupportSearch,
 }
 
 /// How extreme vertices are found.
 #[derive(Clone, Debug)]
-enum Search {
+enum SupportSearch {
     /// In a small hull, by looking at all.
     Scan(Scan),
     /// By hill climbing.
@@ -55,7 +55,7 @@ enum Search {
 }
 
 impl Hull {
-    /// The vertices, in the order in which they are named by ids.
+    /// The vertices, in the order of their ids.
     pub fn points(&self) -> &[Vec3] {
         &self.points
     }
@@ -73,8 +73,8 @@ impl Hull {
     /// have 12 bytes per vertex for that instead of the table.
     pub fn heap_bytes(&self) -> usize {
         let search = match &self.search {
-            Search::Scan(scan) => scan.heap_bytes(),
-            Search::Climb(start) => start.heap_bytes(),
+            SupportSearch::Scan(scan) => scan.heap_bytes(),
+            SupportSearch::Climb(start) => start.heap_bytes(),
         };
         size_of_val(&*self.points) + search + self.graph.heap_bytes() + self.faces.heap_bytes()
     }
@@ -83,17 +83,17 @@ impl Hull {
     /// one from memory that is in no cache, and so the processor waits for all of it at once.
     pub(crate) fn extreme_vertices<const N: usize>(&self, dirs: [DVec3; N]) -> [VertexId; N] {
         match &self.search {
-            Search::Scan(scan) => dirs.map(|dir| scan.highest(&self.points, dir, 0)),
-            Search::Climb(start) => {
+            SupportSearch::Scan(scan) => dirs.map(|dir| scan.extreme_vertex(&self.points, dir, 0)),
+            SupportSearch::Climb(start) => {
                 let starts = dirs.map(|dir| start.lookup(dir));
-                climb::extreme_vertices(self.slope(), dirs, starts)
+                climb::extreme_vertices(self.climb(), dirs, starts)
             }
         }
     }
 
     #[inline(always)]
-    fn slope(&self) -> Slope<'_> {
-        Slope {
+    fn climb(&self) -> HillClimb<'_> {
+        HillClimb {
             points: &self.points,
             graph: &self.graph,
             center: self.center,
@@ -107,8 +107,8 @@ impl Hull {
     fn extreme_vertex(&self, x: f64, y: f64, z: f64, start: VertexId, cost: &mut Cost) -> VertexId {
         let dir = DVec3::new(x, y, z);
         match &self.search {
-            Search::Scan(scan) => scan.highest(&self.points, dir, start),
-            Search::Climb(_) => climb::extreme_vertex(self.slope(), dir, start, cost),
+            SupportSearch::Scan(scan) => scan.extreme_vertex(&self.points, dir, start),
+            SupportSearch::Climb(_) => climb::extreme_vertex(self.climb(), dir, start, cost),
         }
     }
 }
@@ -122,15 +122,15 @@ impl Support for Hull {
     }
 
     #[inline]
-    fn start(&self, dir: DVec3) -> VertexId {
+    fn start_vertex(&self, dir: DVec3) -> VertexId {
         match &self.search {
-            Search::Scan(_) => 0,
-            Search::Climb(start) => start.lookup(dir),
+            SupportSearch::Scan(_) => 0,
+            SupportSearch::Climb(start) => start.lookup(dir),
         }
     }
 
     #[inline]
-    fn valid_start(&self, vertex: VertexId) -> VertexId {
+    fn clamp_vertex(&self, vertex: VertexId) -> VertexId {
         if (vertex as usize) < self.points.len() {
             vertex
         } else {
@@ -192,7 +192,7 @@ impl Polytope for Hull {
     }
 
     #[inline(always)]
-    fn four_corners(&self, face: FaceId, numbers: [usize; 4]) -> [Vec3; 4] {
+    fn face_points_x4(&self, face: FaceId, numbers: [usize; 4]) -> [Vec3; 4] {
         let polygon = self.faces.polygon(face);
         let [a, b, c, d] = numbers;
         let corner = |i: usize| self.points[usize::from(polygon[i].vertex)];
@@ -200,27 +200,28 @@ impl Polytope for Hull {
     }
 
     #[inline]
-    fn corners(&self, face: FaceId) -> impl Corners {
+    fn face_points(&self, face: FaceId) -> impl FacePoints {
         let corners = self.faces.polygon(face).iter();
         corners.map(|corner| self.vertex(corner.vertex.into()))
     }
 
     #[inline]
-    fn face_at(&self, vertex: VertexId, dir: DVec3) -> FaceId {
-        self.faces.most_aligned(self.graph.faces_at(vertex), dir)
+    fn face_at_vertex(&self, vertex: VertexId, dir: DVec3) -> FaceId {
+        self.faces
+            .most_aligned(self.graph.faces_around(vertex), dir)
     }
 
     #[inline]
-    fn face_beside(&self, edge: u32, dir: DVec3) -> FaceId {
-        match self.graph.faces_beside(edge) {
+    fn face_at_edge(&self, edge: u32, dir: DVec3) -> FaceId {
+        match self.graph.faces_of_edge(edge) {
             Some(pair) => self.faces.most_aligned([pair], dir),
-            None => self.face_at(0, dir),
+            None => self.face_at_vertex(0, dir),
         }
     }
 
     #[inline]
-    fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32> {
-        self.graph.edge_id(from, to)
+    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<u32> {
+        self.graph.edge_between(from, to)
     }
 
     #[inline]
@@ -229,12 +230,12 @@ impl Polytope for Hull {
     }
 
     #[inline]
-    fn cap(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
-        self.faces.cap(face)
+    fn cluster(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
+        self.faces.cluster(face)
     }
 
     #[inline]
-    fn edge(&self, id: u32) -> Option<[VertexId; 2]> {
-        self.graph.edge(id)
+    fn edge_ends(&self, id: u32) -> Option<[VertexId; 2]> {
+        self.graph.edge_ends(id)
     }
 }

@@ -10,12 +10,12 @@ const BITS: u32 = 10;
 /// The vertices and triangles of a surface, renumbered so that what lies near in space lies near in
 /// memory: vertices along a curve that fills space (Morton, *A computer oriented geodetic data base
 /// and a new technique in file sequencing*, IBM, 1966), and triangles by their corners.
-pub(super) fn along_curve(points: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
+pub(super) fn morton_order(points: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>, Vec<[u32; 3]>) {
     let low = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
     let high = points.iter().copied().reduce(Vec3::max).unwrap_or_default();
     let cells = (1 << BITS) as f32 / (high - low).max_element();
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    order.sort_by_cached_key(|&v| place((points[v as usize] - low) * cells));
+    order.sort_by_cached_key(|&v| morton_code((points[v as usize] - low) * cells));
     let mut number = vec![0; points.len()];
     for (new, &old) in (0..).zip(&order) {
         number[old as usize] = new;
@@ -32,12 +32,12 @@ pub(super) fn along_curve(points: &[Vec3], triangles: &[[u32; 3]]) -> (Vec<Vec3>
 }
 
 /// How far along the curve the cell with these coordinates is: their bits in turn.
-fn place(cell: Vec3) -> u32 {
+fn morton_code(cell: Vec3) -> u32 {
     // Casts saturate.
     let coordinates = cell.to_array().map(|x| (x as u32).min((1 << BITS) - 1));
-    (0..BITS).fold(0, |place, bit| {
+    (0..BITS).fold(0, |code, bit| {
         let [x, y, z] = coordinates.map(|coordinate| coordinate >> bit & 1);
-        place | (x | y << 1 | z << 2) << (3 * bit)
+        code | (x | y << 1 | z << 2) << (3 * bit)
     })
 }
 
@@ -48,8 +48,8 @@ mod tests {
     use super::*;
 
     fn sphere(count: usize) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-        let mut dice = oorandom::Rand64::new(11);
-        let mut coordinate = || 2.0 * dice.rand_float() as f32 - 1.0;
+        let mut rng = oorandom::Rand64::new(11);
+        let mut coordinate = || 2.0 * rng.rand_float() as f32 - 1.0;
         let points: Vec<Vec3> = (0..count)
             .map(|_| Vec3::from([(); 3].map(|()| coordinate())).normalize_or(Vec3::X))
             .collect();
@@ -79,14 +79,14 @@ mod tests {
     #[test]
     fn the_surface_is_the_same_and_lies_denser() {
         let (points, triangles) = sphere(1000);
-        let (new_points, new_triangles) = along_curve(&points, &triangles);
+        let (new_points, new_triangles) = morton_order(&points, &triangles);
         assert_eq!(new_triangles.len(), triangles.len());
         let same = corners(&points, &triangles) == corners(&new_points, &new_triangles);
         assert!(same, "other triangles");
         let [before, after] =
             [(&points, &triangles), (&new_points, &new_triangles)].map(|(p, t)| lines(p, t));
         assert!(after < 0.65 * before, "{before} lines, then {after}");
-        let again = along_curve(&new_points, &new_triangles);
+        let again = morton_order(&new_points, &new_triangles);
         assert_eq!(again, (new_points, new_triangles), "no order of its own");
     }
 
@@ -94,7 +94,7 @@ mod tests {
     fn any_points_have_an_order() {
         for size in [0.0, f32::MIN_POSITIVE, f32::MAX] {
             let points = [Vec3::NEG_X, Vec3::X, Vec3::Y, Vec3::Z].map(|p| p * size);
-            let (ordered, triangles) = along_curve(&points, &[[0, 1, 2], [3, 0, 2]]);
+            let (ordered, triangles) = morton_order(&points, &[[0, 1, 2], [3, 0, 2]]);
             let same = corners(&points, &[[0, 1, 2], [3, 0, 2]]) == corners(&ordered, &triangles);
             assert!(same, "of size {size}");
         }

@@ -56,7 +56,7 @@ impl Scan {
     /// that contacts stay where they are, or the first. (Inlined, as what it calls: a direction that goes
     /// through memory is waited for longer than a scan takes.)
     #[inline(always)]
-    pub fn highest(&self, points: &[Vec3], dir: DVec3, preferred: VertexId) -> VertexId {
+    pub fn extreme_vertex(&self, points: &[Vec3], dir: DVec3, preferred: VertexId) -> VertexId {
         let mut candidates = self.candidates(dir);
         let mut highest = candidates.trailing_zeros();
         if candidates.is_power_of_two() {
@@ -97,7 +97,7 @@ impl Scan {
         }
         let [low, high]: [f32x4; 2] = bytemuck::cast(highest);
         let [a, b, c, d] = low.fast_max(high).to_array();
-        let least = greater(greater(a, b), greater(c, d)) - SCAN_ROUNDING * size as f32;
+        let least = max_no_nan(max_no_nan(a, b), max_no_nan(c, d)) - SCAN_ROUNDING * size as f32;
         let least = f32x8::splat(least);
         let mut candidates = 0;
         for (number, height) in heights[..self.rows.len()].iter().enumerate() {
@@ -114,8 +114,8 @@ impl Scan {
     }
 }
 
-/// The greater of two numbers, none of which is missing: what `max` would have to look into.
-fn greater(a: f32, b: f32) -> f32 {
+/// The greater of two numbers. Neither is NaN, so the check for it in `f32::max` is not needed.
+fn max_no_nan(a: f32, b: f32) -> f32 {
     if a > b { a } else { b }
 }
 
@@ -123,24 +123,24 @@ fn greater(a: f32, b: f32) -> f32 {
 mod tests {
     use super::*;
 
-    fn vector(dice: &mut oorandom::Rand64) -> DVec3 {
-        DVec3::from([(); 3].map(|()| 2.0 * dice.rand_float() - 1.0))
+    fn vector(rng: &mut oorandom::Rand64) -> DVec3 {
+        DVec3::from([(); 3].map(|()| 2.0 * rng.rand_float() - 1.0))
     }
 
     /// Whatever the number of points, their size and place, and the direction's length; also of
     /// points that nearly tie.
     #[test]
     fn the_highest_in_f64_is_found() {
-        let mut dice = oorandom::Rand64::new(3);
+        let mut rng = oorandom::Rand64::new(3);
         for round in 0..20_000 {
             let size = 10_f64.powi(round % 13 - 6);
             let flatness = [1.0, 1e-3, 1e-6, 0.0][round as usize / 13 % 4];
-            let center = vector(&mut dice) * size * [0.0, 1.0, 1e3][round as usize % 3];
-            let normal = vector(&mut dice).normalize();
+            let center = vector(&mut rng) * size * [0.0, 1.0, 1e3][round as usize % 3];
+            let normal = vector(&mut rng).normalize();
             let count = 4 + round as usize % (LARGEST - 3);
             let points: Vec<Vec3> = (0..count)
                 .map(|_| {
-                    let p = vector(&mut dice);
+                    let p = vector(&mut rng);
                     let flat = p - normal * normal.dot(p) * (1.0 - flatness);
                     (center + flat * size).as_vec3()
                 })
@@ -148,12 +148,12 @@ mod tests {
             let away = |p: &Vec3| p.as_dvec3().distance(center);
             let radius = points.iter().map(away).fold(0.0, f64::max);
             let scan = Scan::new(&points, center, radius).expect("few points");
-            for toward in [normal, vector(&mut dice), DVec3::X] {
+            for toward in [normal, vector(&mut rng), DVec3::X] {
                 let dir = toward * 10_f64.powi(round % 81 - 40);
                 let height = |p: &Vec3| dir.dot(p.as_dvec3());
                 let most = points.iter().map(height).fold(f64::NEG_INFINITY, f64::max);
                 let first = points.iter().position(|p| height(p) == most);
-                assert_eq!(first, Some(scan.highest(&points, dir, 0) as usize));
+                assert_eq!(first, Some(scan.extreme_vertex(&points, dir, 0) as usize));
             }
         }
     }
@@ -163,7 +163,7 @@ mod tests {
         let points = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_ONE, Vec3::ONE];
         let scan = Scan::new(&points, DVec3::ZERO, 2.0).expect("few points");
         for dir in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY, DVec3::MIN] {
-            assert!((scan.highest(&points, dir, 0) as usize) < points.len());
+            assert!((scan.extreme_vertex(&points, dir, 0) as usize) < points.len());
         }
     }
 }

@@ -7,17 +7,17 @@ pub(super) type HalfEdge = u32;
 
 /// A half-edge with its ends.
 #[derive(Clone, Copy, Default)]
-pub(super) struct Side {
+pub(super) struct DirectedEdge {
     pub from: u16,
     pub to: u16,
     pub half_edge: HalfEdge,
 }
 
 /// Triangles, counter-clockwise seen from outside, that form one sphere.
-pub(super) struct Surface<'a> {
+pub(super) struct HalfEdgeMesh<'a> {
     pub triangles: &'a [[u32; 3]],
     /// Those that leave vertex `v` are `first[v]..first[v + 1]`, clockwise seen from outside.
-    sides: Vec<Side>,
+    sides: Vec<DirectedEdge>,
     first: Vec<u32>,
     /// Where each half-edge stands in `sides`.
     position: Vec<u32>,
@@ -25,10 +25,10 @@ pub(super) struct Surface<'a> {
     twin: Vec<HalfEdge>,
 }
 
-impl<'a> Surface<'a> {
+impl<'a> HalfEdgeMesh<'a> {
     /// From triangles over `count` vertices, of which there are no more than 16 bits can name.
     pub fn new(count: usize, triangles: &'a [[u32; 3]]) -> Result<Self, HullError> {
-        let all = all_sides(triangles);
+        let all = directed_edges(triangles);
         let (by_end, _) = sort(&all, count, |side| side.to);
         let (sides, first) = sort(&by_end, count, |side| side.from);
         if let Some(loose) = first.windows(2).position(|pair| pair[0] == pair[1]) {
@@ -47,15 +47,15 @@ impl<'a> Surface<'a> {
             before = Some(ends);
             twin[side.half_edge as usize] = reverse.half_edge;
         }
-        let mut surface = Self {
+        let mut mesh = Self {
             triangles,
             sides,
             first,
             position: vec![0; all.len()],
             twin,
         };
-        if surface.sort_fans() && surface.is_sphere() {
-            Ok(surface)
+        if mesh.sort_around_vertices() && mesh.is_sphere() {
+            Ok(mesh)
         } else {
             Err(HullError::NotManifold)
         }
@@ -83,13 +83,13 @@ impl<'a> Surface<'a> {
     /// The sides that leave a vertex, clockwise: right of each of them is the triangle left of the
     /// next one.
     #[inline]
-    pub fn leaving(&self, vertex: u32) -> &[Side] {
+    pub fn outgoing(&self, vertex: u32) -> &[DirectedEdge] {
         let v = vertex as usize;
         &self.sides[self.first[v] as usize..self.first[v + 1] as usize]
     }
 
-    /// The place of an edge among those that leave its lower vertex.
-    pub fn edge_place(&self, h: HalfEdge) -> u16 {
+    /// The slot of an edge among those that leave its lower vertex.
+    pub fn edge_slot(&self, h: HalfEdge) -> u16 {
         let twin = self.twin(h);
         let outgoing = if self.start(h) < self.start(twin) {
             h
@@ -101,7 +101,7 @@ impl<'a> Surface<'a> {
 
     /// Brings the sides around each vertex into their order, from that to the lowest vertex on.
     /// `false` if the triangles around a vertex are not one fan.
-    fn sort_fans(&mut self) -> bool {
+    fn sort_around_vertices(&mut self) -> bool {
         (0..self.vertex_count()).all(|v| {
             let [start, end] = [v, v + 1].map(|v| self.first[v] as usize);
             let first = self.sides[start].half_edge;
@@ -110,7 +110,7 @@ impl<'a> Surface<'a> {
                 if h == first && place > start {
                     return false;
                 }
-                self.sides[place] = Side {
+                self.sides[place] = DirectedEdge {
                     from: v as u16,
                     to: self.end(h) as u16,
                     half_edge: h,
@@ -134,7 +134,7 @@ impl<'a> Surface<'a> {
         let mut reached = 0;
         while let Some(v) = stack.pop() {
             reached += 1;
-            for side in self.leaving(v) {
+            for side in self.outgoing(v) {
                 if !std::mem::replace(&mut seen[side.to as usize], true) {
                     stack.push(side.to.into());
                 }
@@ -155,10 +155,10 @@ pub(super) fn triangle(h: HalfEdge) -> usize {
     h as usize / 3
 }
 
-fn all_sides(triangles: &[[u32; 3]]) -> Vec<Side> {
+fn directed_edges(triangles: &[[u32; 3]]) -> Vec<DirectedEdge> {
     let sides =
         |(t, &[a, b, c]): (HalfEdge, &[u32; 3])| [(a, b), (b, c), (c, a)].into_iter().zip(3 * t..);
-    let side = |((from, to), half_edge): ((u32, u32), HalfEdge)| Side {
+    let side = |((from, to), half_edge): ((u32, u32), HalfEdge)| DirectedEdge {
         from: from as u16,
         to: to as u16,
         half_edge,
@@ -168,7 +168,11 @@ fn all_sides(triangles: &[[u32; 3]]) -> Vec<Side> {
 
 /// The sides by a vertex of theirs, otherwise in the order given (a counting sort), and where
 /// those of each vertex begin.
-fn sort(sides: &[Side], count: usize, vertex: impl Fn(&Side) -> u16) -> (Vec<Side>, Vec<u32>) {
+fn sort(
+    sides: &[DirectedEdge],
+    count: usize,
+    vertex: impl Fn(&DirectedEdge) -> u16,
+) -> (Vec<DirectedEdge>, Vec<u32>) {
     let mut first = vec![0; count + 1];
     for side in sides {
         first[usize::from(vertex(side)) + 1] += 1;
@@ -177,7 +181,7 @@ fn sort(sides: &[Side], count: usize, vertex: impl Fn(&Side) -> u16) -> (Vec<Sid
         first[v + 1] += first[v];
     }
     let mut fill = first.clone();
-    let mut sorted = vec![Side::default(); sides.len()];
+    let mut sorted = vec![DirectedEdge::default(); sides.len()];
     for side in sides {
         let place = &mut fill[usize::from(vertex(side))];
         sorted[*place as usize] = *side;

@@ -3,40 +3,40 @@
 use glam::{DVec3, Vec3};
 use wide::{f64x4, u64x4};
 
-use crate::greatest::{Greatest, Top};
+use crate::greatest::{ArgMax, ArgMax4};
 
 /// Points are looked at in fours.
 pub(super) const LANES: usize = 4;
 
 /// The highest point so far.
-pub(super) struct Highest {
+pub(super) struct ArgMaxDot {
     dir: [f64x4; 3],
-    heights: Greatest,
+    heights: ArgMax4,
 }
 
-impl Highest {
+impl ArgMaxDot {
     #[inline(always)]
     pub fn new(dir: DVec3) -> Self {
         Self {
             dir: dir.to_array().map(f64x4::splat),
-            heights: Greatest::above(f64::NEG_INFINITY),
+            heights: ArgMax4::new(f64::NEG_INFINITY),
         }
     }
 
     /// Looks at four points, coordinate by coordinate, of which the first has this place.
     #[inline(always)]
-    pub fn look_at(&mut self, place: usize, coordinates: [[f32; LANES]; 3]) {
+    pub fn update(&mut self, place: usize, coordinates: [[f32; LANES]; 3]) {
         let [x, y, z] = coordinates;
         let [x, y, z] = [widened(x), widened(y), widened(z)];
         let heights = x * self.dir[0] + y * self.dir[1] + z * self.dir[2];
         let places = u64x4::splat(place as u64) + u64x4::new([0, 1, 2, 3]);
-        self.heights.look_at(heights, places);
+        self.heights.update(heights, places);
     }
 
     /// Its place among all that were looked at, and its height.
     #[inline(always)]
-    pub fn top(self) -> Top {
-        self.heights.top()
+    pub fn finish(self) -> ArgMax {
+        self.heights.finish()
     }
 }
 

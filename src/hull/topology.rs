@@ -35,13 +35,13 @@ pub(crate) fn hull_and_diagonals(
     if points.len() > MAX_VERTICES {
         return (Err(HullError::TooManyPoints), Diagonals(Box::default()));
     }
-    let Some(surface) = Surface::of(polyhedron) else {
+    let Some(surface) = Triangulation::of(polyhedron) else {
         return (Hull::from_points(points), Diagonals::all(polyhedron));
     };
     if let Some(hull) = surface.with_own_diagonals(points) {
         return (Ok(hull), Diagonals(Box::default()));
     }
-    match Hull::in_order(points.to_vec(), &surface.triangles) {
+    match Hull::from_reordered_triangles(points.to_vec(), &surface.triangles) {
         Ok(hull) => (
             Ok(hull),
             Diagonals::of(polyhedron, surface.flat_edges.into_iter()),
@@ -104,7 +104,7 @@ impl Diagonals {
 }
 
 /// Whether two polyhedra have the same points and edges, so that their hulls are the same.
-pub(crate) fn is_same(a: &ConvexPolyhedron, b: &ConvexPolyhedron) -> bool {
+pub(crate) fn same_polyhedron(a: &ConvexPolyhedron, b: &ConvexPolyhedron) -> bool {
     let [edges_a, edges_b] = [a, b].map(|p| p.edges().iter().map(|edge| edge.vertices));
     same_points(a.points(), b.points()) && edges_a.eq(edges_b)
 }
@@ -117,11 +117,11 @@ pub(crate) fn same_points(a: &[Vec3], b: &[Vec3]) -> bool {
 
 /// The triangles of a polyhedron, counter-clockwise from outside; `None` if they cannot be told.
 pub(crate) fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
-    Some(Surface::of(polyhedron)?.triangles)
+    Some(Triangulation::of(polyhedron)?.triangles)
 }
 
 /// A triangulated surface.
-struct Surface {
+struct Triangulation {
     triangles: Vec<[u32; 3]>,
     /// The edges across which it hardly bends.
     flat_edges: Vec<u32>,
@@ -129,7 +129,7 @@ struct Surface {
     radius: f64,
 }
 
-impl Surface {
+impl Triangulation {
     fn of(polyhedron: &ConvexPolyhedron) -> Option<Self> {
         let (points, edges) = (polyhedron.points(), polyhedron.edges());
         if points.iter().any(|p| !p.is_finite()) {
@@ -142,7 +142,7 @@ impl Surface {
         let (first, rows) = edge_rows(points.len(), polyhedron);
         let mut triangles = Vec::with_capacity(2 * points.len());
         let mut flat_edges = Vec::new();
-        let mut fan = Vec::new();
+        let mut incident = Vec::new();
         for v in 0..points.len() {
             let here = points[v].as_dvec3();
             let outward = (here - inside).try_normalize()?;
@@ -150,8 +150,8 @@ impl Surface {
             // Turn counter-clockwise about `outward`, whatever the handedness of the pair.
             let y = if x.cross(y).dot(outward) > 0.0 { y } else { -y };
             let v = v as u32;
-            fan.clear();
-            fan.extend(
+            incident.clear();
+            incident.extend(
                 rows[first[v as usize]..first[v as usize + 1]]
                     .iter()
                     .map(|&id| {
@@ -159,7 +159,7 @@ impl Surface {
                         let end = a ^ b ^ v;
                         let edge = points[end as usize].as_dvec3() - here;
                         let seen = DVec2::new(edge.dot(x), edge.dot(y));
-                        FanEdge {
+                        IncidentEdge {
                             id,
                             end,
                             edge,
@@ -167,14 +167,14 @@ impl Surface {
                         }
                     }),
             );
-            fan.sort_unstable_by(|a, b| by_angle(a.seen, b.seen));
-            for (i, side) in fan.iter().enumerate() {
-                let next = &fan[(i + 1) % fan.len()];
+            incident.sort_unstable_by(|a, b| by_angle(a.seen, b.seen));
+            for (i, side) in incident.iter().enumerate() {
+                let next = &incident[(i + 1) % incident.len()];
                 // Each triangle is met at all of its corners: keep it at the lowest.
                 if v < side.end && v < next.end {
                     triangles.push([v, side.end, next.end]);
                 }
-                let last = &fan[(i + fan.len() - 1) % fan.len()];
+                let last = &incident[(i + incident.len() - 1) % incident.len()];
                 if v < side.end && is_flat([last.edge, side.edge, next.edge], flatness) {
                     flat_edges.push(side.id);
                 }
@@ -194,12 +194,12 @@ impl Surface {
         }
         let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
         let triangles = flat_sides::retriangulated(&exact, &self.triangles, self.radius)?;
-        Hull::in_order(points.to_vec(), &triangles).ok()
+        Hull::from_reordered_triangles(points.to_vec(), &triangles).ok()
     }
 }
 
 /// An edge as seen from one of its ends.
-struct FanEdge {
+struct IncidentEdge {
     id: u32,
     /// The other end.
     end: u32,

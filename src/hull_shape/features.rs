@@ -14,7 +14,7 @@ impl Hull {
     /// so nearly, else a vertex.
     pub(super) fn feature_toward(&self, dir: DVec3) -> FeatureId {
         let vertex = self.support_vertex(dir);
-        let face = self.face_at(vertex, dir);
+        let face = self.face_at_vertex(vertex, dir);
         let Some(at) = self.place_around(face, vertex) else {
             return FeatureId::Face(face);
         };
@@ -30,7 +30,7 @@ impl Hull {
             .map(|i| self.face_vertex(face, i % len))
             .into_iter()
             .find(level)
-            .and_then(|other| self.edge_id(vertex, other))
+            .and_then(|other| self.edge_between(vertex, other))
             .map_or(FeatureId::Vertex(vertex), FeatureId::Edge)
     }
 
@@ -44,7 +44,7 @@ impl Hull {
     pub(super) fn feature_normal(&self, feature: FeatureId) -> Option<Vector> {
         let normal = match feature {
             FeatureId::Face(face) if self.has_face(face) => self.face_normal(face),
-            FeatureId::Edge(edge) => self.mean_normal(&self.edge(edge)?)?,
+            FeatureId::Edge(edge) => self.mean_normal(&self.edge_ends(edge)?)?,
             FeatureId::Vertex(vertex) => self.mean_normal(&[vertex])?,
             FeatureId::Face(_) | FeatureId::Unknown => return None,
         };
@@ -94,13 +94,13 @@ impl PolygonalFeatureMap for Hull {
     /// coin stands on its whole rim, and not on four neighbouring points of it.
     fn local_support_feature(&self, dir: Vector, out_feature: &mut PolygonalFeature) {
         let vertex = self.support_vertex(dir.as_dvec3());
-        let face = self.face_at(vertex, dir.as_dvec3());
+        let face = self.face_at_vertex(vertex, dir.as_dvec3());
         let len = self.face_len(face);
         let corner = |i: usize| self.face_vertex(face, i % len);
         let first = self.place_around(face, vertex).unwrap_or(0);
         let mut count = 0;
         for (slot, i) in self.far_corners(face, first).enumerate() {
-            let edge = self.edge_id(corner(i), corner(i + 1));
+            let edge = self.edge_between(corner(i), corner(i + 1));
             out_feature.vertices[slot] = self.points()[corner(i) as usize];
             out_feature.vids[slot] = PackedFeatureId::vertex(corner(i));
             out_feature.eids[slot] = edge.map_or(PackedFeatureId::UNKNOWN, PackedFeatureId::edge);

@@ -86,11 +86,11 @@ use crate::support::{FaceId, Polytope};
 /// ```
 #[derive(Clone, Debug)]
 pub struct HullShape {
-    parts: Arc<Parts>,
+    inner: Arc<Inner>,
 }
 
 #[derive(Debug)]
-struct Parts {
+struct Inner {
     hull: Hull,
     /// What rapier saves, draws and sweeps.
     polyhedron: ConvexPolyhedron,
@@ -106,7 +106,7 @@ impl HullShape {
     /// # Errors
     /// Names what is wrong with the points, see [`HullError`].
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
-        hull::surround(points, Self::from_triangles)
+        hull::hull_of_points(points, Self::from_triangles)
     }
 
     /// From the triangulated surface of a convex polytope, counter-clockwise from outside.
@@ -137,7 +137,7 @@ impl HullShape {
 
     /// The hull with each coordinate multiplied by that of `scale`; `None` if it is flat then.
     fn scaled(&self, scale: Vec3) -> Option<Self> {
-        let polyhedron = &self.parts.polyhedron;
+        let polyhedron = &self.inner.polyhedron;
         let points: Vec<Vec3> = polyhedron.points().iter().map(|p| *p * scale).collect();
         let mut triangles = topology::triangles(polyhedron)?;
         if scale.element_product() < 0.0 {
@@ -151,7 +151,7 @@ impl HullShape {
 
     /// The prepared hull.
     pub fn hull(&self) -> &Hull {
-        &self.parts.hull
+        &self.inner.hull
     }
 }
 
@@ -182,16 +182,16 @@ impl TryFrom<ConvexPolyhedron> for HullShape {
 
     fn try_from(polyhedron: ConvexPolyhedron) -> Result<Self, HullError> {
         // From the polyhedron even where the triangles are known: that is what the dispatcher
-        // does with the plain hull of a loaded world, whose features keep their names by it.
+        // does with the plain hull of a loaded world, whose features keep their ids by it.
         let hull = Hull::try_from(&polyhedron)?;
-        let parts = Parts {
+        let inner = Inner {
             local_aabb: polyhedron.local_aabb(),
             mass: MassProperties::from_convex_polyhedron(1.0, hull.points(), &triangles(&hull)),
             hull,
             polyhedron,
         };
         Ok(Self {
-            parts: Arc::new(parts),
+            inner: Arc::new(inner),
         })
     }
 }

@@ -21,7 +21,8 @@ impl Hull {
     /// The vertex that is extreme in direction `dir`, of any length.
     #[inline]
     pub(super) fn support_vertex(&self, dir: DVec3) -> VertexId {
-        self.support(dir, self.start(dir), &mut Cost::default()).1
+        self.support(dir, self.start_vertex(dir), &mut Cost::default())
+            .1
     }
 
     /// The position of the vertex that is extreme in direction `dir`.
@@ -59,15 +60,17 @@ impl HullShape {
         };
         let cost = &mut Cost::default();
         let toward = point.as_dvec3() - cso.shape_1.center();
-        let first = cso.support(toward, cso.start(toward), cost);
+        let first = cso.support(toward, cso.start_vertices(toward), cost);
         match gjk::distance::<Preferred, _, _>(&cso, &[first], f64::INFINITY, cost) {
-            Outcome::Near(closest) => (
+            Outcome::Disjoint(closest) => (
                 PointProjection::new(false, closest.on_1.as_vec3()),
                 self.hull().feature_toward(closest.normal),
             ),
-            Outcome::Overlap(_) if solid => (PointProjection::new(true, point), FeatureId::Unknown),
+            Outcome::Overlapping(_) if solid => {
+                (PointProjection::new(true, point), FeatureId::Unknown)
+            }
             // Never apart: no distance is farther than infinity.
-            Outcome::Overlap(_) | Outcome::Apart(_) => {
+            Outcome::Overlapping(_) | Outcome::Separated(_) => {
                 let (on_face, face) = self.project_to_face(point.as_dvec3());
                 (on_face, FeatureId::Face(face))
             }
@@ -91,11 +94,11 @@ impl Support for Point {
         (DVec3::ZERO, 0)
     }
 
-    fn start(&self, _: DVec3) -> VertexId {
+    fn start_vertex(&self, _: DVec3) -> VertexId {
         0
     }
 
-    fn valid_start(&self, _: VertexId) -> VertexId {
+    fn clamp_vertex(&self, _: VertexId) -> VertexId {
         0
     }
 

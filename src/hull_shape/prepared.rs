@@ -7,7 +7,7 @@ use parry3d::shape::{Compound, CompoundFlags, ConvexPolyhedron, SharedShape};
 
 use super::HullShape;
 use crate::hull::HullError;
-use crate::hull::topology::{fingerprint, is_same};
+use crate::hull::topology::{fingerprint, same_polyhedron};
 
 /// Puts [`HullShape`]s in the place of plain hulls, also of those that are parts of compounds, for
 /// worlds that were loaded or that others have built. Colliders that share a shape, or have equal
@@ -36,13 +36,13 @@ use crate::hull::topology::{fingerprint, is_same};
 #[derive(Default)]
 pub struct PreparedShapes {
     /// By the address of what was prepared.
-    known: HashMap<usize, Known>,
+    known: HashMap<usize, Replacement>,
     /// By the fingerprint of the polyhedron.
     hulls: HashMap<u64, Vec<SharedShape>>,
     refused: Vec<HullError>,
 }
 
-struct Known {
+struct Replacement {
     prepared: SharedShape,
     /// Kept so that no other shape comes to its address.
     _original: SharedShape,
@@ -58,7 +58,7 @@ impl PreparedShapes {
             return known.prepared.clone();
         }
         let prepared = self.replacement(shape).unwrap_or_else(|| shape.clone());
-        let known = Known {
+        let known = Replacement {
             prepared: prepared.clone(),
             _original: shape.clone(),
         };
@@ -96,7 +96,7 @@ impl PreparedShapes {
         let alike = self.hulls.entry(fingerprint(polyhedron)).or_default();
         let of_this = |shape: &&SharedShape| {
             let hull = shape.as_shape::<HullShape>();
-            hull.is_some_and(|hull| is_same(&hull.parts.polyhedron, polyhedron))
+            hull.is_some_and(|hull| same_polyhedron(&hull.inner.polyhedron, polyhedron))
         };
         if let Some(known) = alike.iter().find(of_this) {
             return Some(known.clone());

@@ -13,11 +13,11 @@ use super::HullShape;
 
 impl Shape for HullShape {
     fn compute_local_aabb(&self) -> Aabb {
-        self.parts.local_aabb
+        self.inner.local_aabb
     }
 
     fn compute_local_bounding_sphere(&self) -> BoundingSphere {
-        self.parts.polyhedron.local_bounding_sphere()
+        self.inner.polyhedron.local_bounding_sphere()
     }
 
     fn compute_aabb(&self, position: &Pose) -> Aabb {
@@ -34,7 +34,7 @@ impl Shape for HullShape {
     }
 
     fn mass_properties(&self, density: Real) -> MassProperties {
-        let mut scaled = self.parts.mass;
+        let mut scaled = self.inner.mass;
         scaled.set_mass(scaled.mass() * density, true);
         scaled
     }
@@ -44,11 +44,11 @@ impl Shape for HullShape {
     }
 
     fn as_typed_shape(&self) -> TypedShape<'_> {
-        TypedShape::ConvexPolyhedron(&self.parts.polyhedron)
+        TypedShape::ConvexPolyhedron(&self.inner.polyhedron)
     }
 
     fn ccd_thickness(&self) -> Real {
-        self.parts.local_aabb.half_extents().min_element()
+        self.inner.local_aabb.half_extents().min_element()
     }
 
     fn ccd_angular_thickness(&self) -> Real {

@@ -13,18 +13,18 @@
 use glam::Vec2;
 use wide::f32x4;
 
-use super::polygon::{LANES, Polygon, Side};
+use super::polygon::{EdgeLanes, LANES, PolygonRows};
 use super::sectors;
-use crate::both::both;
+use crate::both::map_pair;
 
 /// From so many pairs of sides on, only near ones are compared.
 const MANY: usize = 1200;
 
 /// Where a corner of the intersection comes from. Indices are into the polygons as given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Tag {
+pub(super) enum VertexOrigin {
     /// A corner of the clipped polygon.
-    Corner(u16),
+    Subject(u16),
     /// A corner of the window.
     Window(u16),
     /// A side of the window crossing a side of the clipped polygon.
@@ -33,16 +33,16 @@ pub(super) enum Tag {
 
 /// The two polygons, and the corners of their intersection.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Polygons {
+pub(super) struct Clipper {
     /// Counter-clockwise.
-    pub window: Polygon,
+    pub window: PolygonRows,
     /// Clockwise, as a second shape's face is seen; perhaps only the two ends of a line.
-    pub subject: Polygon,
+    pub subject: PolygonRows,
     /// Of the last intersection.
-    pub corners: Corners,
+    pub corners: ClipVertices,
 }
 
-impl Polygons {
+impl Clipper {
     /// Finds the corners of the intersection of window and subject.
     #[inline]
     pub fn intersect(&mut self) {
@@ -69,18 +69,18 @@ impl Polygons {
         let [mut x, mut y] = [[f32x4::ZERO; LANES + 2]; 2];
         let (mut there, mut inside) = (0, 0);
         for i in 0..self.window.count.min(LANES) {
-            let side = Side::new(window, i);
-            inside |= u32::from(subject.holds(side.x, side.y)) << i;
-            let crossings = side.cut(subject);
+            let side = EdgeLanes::new(window, i);
+            inside |= u32::from(subject.contains(side.x, side.y)) << i;
+            let crossings = side.clip_row(subject);
             (x[i], y[i]) = (crossings.x, crossings.y);
             there |= crossings.there << (LANES * i);
         }
         let corners = subject.inside.to_bitmask();
         [x[LANES], x[LANES + 1]] = [subject.x, window.x];
         [y[LANES], y[LANES + 1]] = [subject.y, window.y];
-        let subject = corners & self.subject.real(0);
+        let subject = corners & self.subject.vertex_mask(0);
         there |= (subject | inside << LANES) << (LANES * LANES);
-        self.corners.gather(there, 0, &x, &y);
+        self.corners.push_masked(there, 0, &x, &y);
     }
 
     /// Gathers corners as they are found: of large polygons most are not there.
@@ -98,45 +98,45 @@ impl Polygons {
         let is_line = subject.count == 2;
         for i in 0..window.count {
             let row = &window.rows()[i / LANES];
-            let side = Side::new(row, i % LANES);
+            let side = EdgeLanes::new(row, i % LANES);
             let mut is_inside = !is_line;
             for (r, other) in subject.rows_mut().iter_mut().enumerate() {
-                is_inside &= other.holds(side.x, side.y);
-                let crossings = side.cut(other);
+                is_inside &= other.contains(side.x, side.y);
+                let crossings = side.clip_row(other);
                 let there = crossings.there & if is_line { 1 } else { !0 };
                 let source = i * width + r * LANES;
-                corners.gather(there, source, &[crossings.x], &[crossings.y]);
+                corners.push_masked(there, source, &[crossings.x], &[crossings.y]);
             }
             let there = u32::from(is_inside) << (i % LANES);
             let source = window_source + i / LANES * LANES;
-            corners.gather(there, source, &[row.x], &[row.y]);
+            corners.push_masked(there, source, &[row.x], &[row.y]);
         }
         for (r, row) in subject.rows().iter().enumerate() {
-            let there = row.inside.to_bitmask() & subject.real(r);
+            let there = row.inside.to_bitmask() & subject.vertex_mask(r);
             let source = subject_source + r * LANES;
-            corners.gather(there, source, &[row.x], &[row.y]);
+            corners.push_masked(there, source, &[row.x], &[row.y]);
         }
     }
 
     /// Where a corner of the intersection comes from.
     #[inline]
-    pub fn tag(&self, corner: usize) -> Tag {
+    pub fn origin(&self, corner: usize) -> VertexOrigin {
         let source = self.corners.sources[corner] as usize;
         let width = self.subject.width();
         let crossings = self.window.width() * width;
         if source < crossings {
-            Tag::Crossing((source / width) as u16, (source % width) as u16)
+            VertexOrigin::Crossing((source / width) as u16, (source % width) as u16)
         } else if source - crossings < width {
-            Tag::Corner((source - crossings) as u16)
+            VertexOrigin::Subject((source - crossings) as u16)
         } else {
-            Tag::Window((source - crossings - width) as u16)
+            VertexOrigin::Window((source - crossings - width) as u16)
         }
     }
 }
 
 /// Corners one after the other.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Corners {
+pub(super) struct ClipVertices {
     x: Vec<f32>,
     y: Vec<f32>,
     /// What they come from: crossings are numbered window side by window side, after them come the
@@ -145,19 +145,19 @@ pub(super) struct Corners {
     pub count: usize,
 }
 
-impl Corners {
+impl ClipVertices {
     /// Becomes those of a polygon.
-    pub fn set(&mut self, polygon: &Polygon) {
+    pub fn set(&mut self, polygon: &PolygonRows) {
         self.count = 0;
         for (r, row) in polygon.rows().iter().enumerate() {
-            self.gather(polygon.real(r), LANES * r, &[row.x], &[row.y]);
+            self.push_masked(polygon.vertex_mask(r), LANES * r, &[row.x], &[row.y]);
         }
     }
 
     /// Adds those of some rows whose bits are set; the first one of the first row has the number
     /// `source`.
     #[inline(always)]
-    pub fn gather<const ROWS: usize>(
+    pub fn push_masked<const ROWS: usize>(
         &mut self,
         mut there: u32,
         source: usize,
@@ -203,7 +203,7 @@ impl Corners {
     #[inline(always)]
     pub fn fours(&self) -> impl Iterator<Item = [f32x4; 2]> {
         let rows = self.count.div_ceil(LANES);
-        let [x, y] = both([&self.x, &self.y], |all| {
+        let [x, y] = map_pair([&self.x, &self.y], |all| {
             all.as_chunks::<LANES>().0[..rows].iter()
         });
         x.zip(y).map(|(&x, &y)| [x.into(), y.into()])
@@ -224,8 +224,8 @@ mod tests {
 
     const SQUARE: [[f32; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 
-    fn polygon(corners: &[Vec2]) -> Polygon {
-        let mut polygon = Polygon::default();
+    fn polygon(corners: &[Vec2]) -> PolygonRows {
+        let mut polygon = PolygonRows::default();
         polygon.set(corners.len(), |numbers| {
             let corners = numbers.map(|i| corners[i]);
             [corners.map(|p| p.x).into(), corners.map(|p| p.y).into()]
@@ -233,26 +233,26 @@ mod tests {
         polygon
     }
 
-    fn intersection(window: &[Vec2], subject: &[Vec2]) -> Vec<(Vec2, Tag)> {
-        let mut polygons = Polygons {
+    fn intersection(window: &[Vec2], subject: &[Vec2]) -> Vec<(Vec2, VertexOrigin)> {
+        let mut clipper = Clipper {
             window: polygon(window),
             subject: polygon(subject),
-            ..Polygons::default()
+            ..Clipper::default()
         };
-        polygons.intersect();
-        let corners = 0..polygons.corners.count;
+        clipper.intersect();
+        let corners = 0..clipper.corners.count;
         corners
-            .map(|i| (polygons.corners.at(i), polygons.tag(i)))
+            .map(|i| (clipper.corners.at(i), clipper.origin(i)))
             .collect()
     }
 
     /// Both polygons counter-clockwise.
-    fn clip(window: &[Vec2], polygon: &[Vec2]) -> Vec<(Vec2, Tag)> {
+    fn clip(window: &[Vec2], polygon: &[Vec2]) -> Vec<(Vec2, VertexOrigin)> {
         let clockwise: Vec<Vec2> = polygon.iter().rev().copied().collect();
         intersection(window, &clockwise)
     }
 
-    fn clip_square(polygon: [[f32; 2]; 4]) -> Vec<(Vec2, Tag)> {
+    fn clip_square(polygon: [[f32; 2]; 4]) -> Vec<(Vec2, VertexOrigin)> {
         let mut corners = clip(&SQUARE.map(Vec2::from), &polygon.map(Vec2::from));
         corners.sort_by(|a, b| a.0.x.total_cmp(&b.0.x).then(a.0.y.total_cmp(&b.0.y)));
         corners
@@ -263,10 +263,10 @@ mod tests {
         assert_eq!(
             clip_square(SQUARE.map(|[x, y]| [x + 0.5, y + 0.5])),
             [
-                (Vec2::new(0.5, 0.5), Tag::Corner(3)),
-                (Vec2::new(0.5, 1.0), Tag::Crossing(2, 3)),
-                (Vec2::new(1.0, 0.5), Tag::Crossing(1, 2)),
-                (Vec2::new(1.0, 1.0), Tag::Window(2)),
+                (Vec2::new(0.5, 0.5), VertexOrigin::Subject(3)),
+                (Vec2::new(0.5, 1.0), VertexOrigin::Crossing(2, 3)),
+                (Vec2::new(1.0, 0.5), VertexOrigin::Crossing(1, 2)),
+                (Vec2::new(1.0, 1.0), VertexOrigin::Window(2)),
             ]
         );
     }
@@ -274,8 +274,8 @@ mod tests {
     #[test]
     fn a_window_inside_of_the_polygon_is_the_intersection() {
         let corners = clip_square(SQUARE.map(|[x, y]| [4.0 * x - 2.0, 4.0 * y - 2.0]));
-        let tags: Vec<Tag> = corners.iter().map(|corner| corner.1).collect();
-        assert_eq!(tags, [0, 3, 1, 2].map(Tag::Window));
+        let tags: Vec<VertexOrigin> = corners.iter().map(|corner| corner.1).collect();
+        assert_eq!(tags, [0, 3, 1, 2].map(VertexOrigin::Window));
     }
 
     #[test]
@@ -290,23 +290,23 @@ mod tests {
         assert_eq!(
             clip_line([[-0.5, 0.5], [0.5, 0.5]]),
             [
-                (Vec2::new(0.0, 0.5), Tag::Crossing(3, 0)),
-                (Vec2::new(0.5, 0.5), Tag::Corner(1))
+                (Vec2::new(0.0, 0.5), VertexOrigin::Crossing(3, 0)),
+                (Vec2::new(0.5, 0.5), VertexOrigin::Subject(1))
             ]
         );
         assert_eq!(
             clip_line([[0.25, 2.0], [0.25, -2.0]]),
             [
-                (Vec2::new(0.25, 0.0), Tag::Crossing(0, 0)),
-                (Vec2::new(0.25, 1.0), Tag::Crossing(2, 0))
+                (Vec2::new(0.25, 0.0), VertexOrigin::Crossing(0, 0)),
+                (Vec2::new(0.25, 1.0), VertexOrigin::Crossing(2, 0))
             ]
         );
         assert!(clip_line([[-1.0, 2.0], [2.0, 2.0]]).is_empty());
         assert!(clip_line([[-1.0, 0.5], [0.5, 2.0]]).is_empty());
     }
 
-    fn ellipse(count: usize, dice: &mut oorandom::Rand64) -> Vec<Vec2> {
-        let [x, y, a, b, turn] = [(); 5].map(|()| dice.rand_float() as f32);
+    fn ellipse(count: usize, rng: &mut oorandom::Rand64) -> Vec<Vec2> {
+        let [x, y, a, b, turn] = [(); 5].map(|()| rng.rand_float() as f32);
         (0..count)
             .map(|i| {
                 let angle = std::f32::consts::TAU * (i as f32 / count as f32 + turn);
@@ -355,11 +355,11 @@ mod tests {
     /// as have straight runs. No corner is missing that is found when all sides are compared.
     #[test]
     fn near_sides_are_enough() {
-        let mut dice = oorandom::Rand64::new(3);
+        let mut rng = oorandom::Rand64::new(3);
         let mut by_sectors = 0;
         for round in 0..600 {
-            let counts = [(); 2].map(|()| dice.rand_range(3..90) as usize);
-            let [mut window, mut subject] = counts.map(|count| ellipse(count, &mut dice));
+            let counts = [(); 2].map(|()| rng.rand_range(3..90) as usize);
+            let [mut window, mut subject] = counts.map(|count| ellipse(count, &mut rng));
             let tiny = Vec2::splat(6e-8 * (round % 7) as f32);
             match round % 6 {
                 0 => subject = window.iter().map(|&p| p + tiny).collect(),
@@ -370,7 +370,7 @@ mod tests {
                 }
                 3 => subject.iter_mut().for_each(|p| p.y = 0.3 + 1e-3 * p.y),
                 4 => {
-                    let turn = Vec2::from_angle(dice.rand_float() as f32);
+                    let turn = Vec2::from_angle(rng.rand_float() as f32);
                     window = divided(&SQUARE.map(Vec2::from), 20);
                     window.iter_mut().for_each(|p| *p = p.rotate(turn));
                     subject = window.iter().map(|p| *p + tiny).collect();
@@ -378,24 +378,24 @@ mod tests {
                 _ => {}
             }
             subject.reverse();
-            let mut polygons = Polygons {
+            let mut clipper = Clipper {
                 window: polygon(&window),
                 subject: polygon(&subject),
-                ..Polygons::default()
+                ..Clipper::default()
             };
-            let found = |polygons: &Polygons| -> Vec<(Vec2, Tag)> {
-                let corners = 0..polygons.corners.count;
-                let corner = |i| (polygons.corners.at(i), polygons.tag(i));
+            let found = |clipper: &Clipper| -> Vec<(Vec2, VertexOrigin)> {
+                let corners = 0..clipper.corners.count;
+                let corner = |i| (clipper.corners.at(i), clipper.origin(i));
                 corners.map(corner).collect()
             };
-            if !polygons.intersect_sectors() {
+            if !clipper.intersect_sectors() {
                 continue;
             }
             by_sectors += 1;
-            let near = found(&polygons);
-            polygons.corners.count = 0;
-            polygons.intersect_many();
-            let all = found(&polygons);
+            let near = found(&clipper);
+            clipper.corners.count = 0;
+            clipper.intersect_many();
+            let all = found(&clipper);
             let is_found = |at: Vec2| near.iter().any(|other| other.0.distance(at) < 2e-6);
             let missing = all.iter().find(|corner| !is_found(corner.0));
             assert_eq!(missing, None, "round {round}");
@@ -416,11 +416,11 @@ mod tests {
     /// rounding; of few corners, which are one row, and of more.
     #[test]
     fn the_corners_are_those_of_the_intersection() {
-        let mut dice = oorandom::Rand64::new(2);
+        let mut rng = oorandom::Rand64::new(2);
         for round in 0..4000 {
             let most = if round % 8 < 4 { 5 } else { 14 };
-            let counts = [(); 2].map(|()| dice.rand_range(3..most) as usize);
-            let window = ellipse(counts[0], &mut dice);
+            let counts = [(); 2].map(|()| rng.rand_range(3..most) as usize);
+            let window = ellipse(counts[0], &mut rng);
             let tiny = Vec2::splat(6e-8 * (round % 7) as f32);
             let polygon = match round % 4 {
                 0 => window.iter().map(|&p| p + tiny).collect(),
@@ -428,7 +428,7 @@ mod tests {
                     .iter()
                     .map(|p| p.rotate(Vec2::from_angle(tiny.x)))
                     .collect(),
-                _ => ellipse(counts[1], &mut dice),
+                _ => ellipse(counts[1], &mut rng),
             };
             let corners = clip(&window, &polygon);
             for (at, tag) in &corners {
@@ -438,7 +438,7 @@ mod tests {
                 }
             }
             for p in candidates(&window, &polygon) {
-                let near = |(at, _): &(Vec2, Tag)| at.as_dvec2().distance(p) < 1e-4;
+                let near = |(at, _): &(Vec2, VertexOrigin)| at.as_dvec2().distance(p) < 1e-4;
                 assert!(corners.iter().any(near), "round {round}: {p} is missing");
             }
         }

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::contacts::Contacts;
-use super::patch::Patch;
-use super::{Chosen, ClipScratch};
+use super::patch::ContactPatch;
+use super::{ClipScratch, Selection};
 use crate::query::{self, Feature, Proximity};
 use crate::stats::Cost;
 use crate::support::{Cso, FaceId, Polytope, VertexId};
@@ -24,7 +24,7 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
 ) -> Option<Contacts> {
     let ClipScratch {
         planes,
-        polygons,
+        clipper,
         candidates,
     } = scratch;
     let [v1, v2] = query::vertices(cso, proximity.features);
@@ -35,26 +35,26 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
         features,
         ..*proximity
     };
-    let patch = Patch::new(cso, &proximity, normal, planes)?;
-    patch.clip(cso, polygons);
-    let corners = &polygons.corners;
-    let scale = cso.smaller_radius();
+    let patch = ContactPatch::new(cso, &proximity, normal, planes)?;
+    patch.clip(cso, clipper);
+    let corners = &clipper.corners;
+    let scale = cso.min_radius();
     let least = ABSURD_DEPTH * proximity.signed_distance.min(0.0) - SAME_DEPTH * scale;
     let same = SAME_POINT * scale as f32;
     let distances = |_, x, y| patch.distances(x, y);
     let range = least as f32..=max_distance as f32;
-    let survey = candidates.set(corners, distances, range, same);
-    let mut chosen = Chosen::default();
-    if let Some(deepest) = survey.deepest {
-        chosen.push(survey.deepest);
-        chosen.push_all(candidates.spread(corners, corners.at(deepest), same));
+    let summary = candidates.set(corners, distances, range, same);
+    let mut selection = Selection::default();
+    if let Some(deepest) = summary.deepest {
+        selection.push(summary.deepest);
+        selection.push_all(candidates.spread_out(corners, corners.at(deepest), same));
     }
     let witness = (least, features);
-    Some(patch.contacts(cso, witness, (polygons, candidates), &chosen))
+    Some(patch.contacts(cso, witness, (clipper, candidates), &selection))
 }
 
 /// Of the faces at the extreme vertex in direction `dir`, the one that looks along it most.
 fn extreme_face(shape: &impl Polytope, dir: DVec3, start: VertexId) -> FaceId {
     let (_, vertex) = shape.support(dir, start, &mut Cost::default());
-    shape.face_at(vertex, dir)
+    shape.face_at_vertex(vertex, dir)
 }

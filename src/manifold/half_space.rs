@@ -3,12 +3,12 @@
 use glam::Vec2;
 use wide::f64x4;
 
-use super::clip::Polygons;
+use super::clip::Clipper;
 use super::contacts::{Contacts, MAX_POINTS};
-use super::plane::Frame;
+use super::plane::ContactFrame;
 use super::polygon::LANES;
-use super::{Chosen, ClipScratch};
-use crate::fours::{Vectors, as_f32};
+use super::{ClipScratch, Selection};
+use crate::fours::{DVec3x4, to_f32x4};
 use crate::pose::RelativePose;
 use crate::query::{Feature, Proximity, vertex_of};
 use crate::support::Polytope;
@@ -26,62 +26,62 @@ pub fn half_space_contacts(
 ) -> Contacts {
     let witness = vertex_of(shape, proximity.features[0]);
     let (normal, origin) = (proximity.normal, proximity.on_1);
-    let distance = |on_1: Vectors| {
+    let distance = |on_1: DVec3x4| {
         let beyond = (on_1 - origin).dot(normal);
         f64x4::splat(proximity.signed_distance) - beyond
     };
-    let face = shape.face_at(witness, normal);
-    let polygon = shape.cap(face).map_or(face, |(outline, _)| outline);
+    let face = shape.face_at_vertex(witness, normal);
+    let polygon = shape.cluster(face).map_or(face, |(outline, _)| outline);
     let count = shape.face_len(polygon);
     let corner = |i: usize| shape.face_vertex(polygon, i.min(count - 1));
-    let contacts = |chosen: &Chosen| {
-        let [a, b, c, d] = chosen.corners;
+    let contacts = |selection: &Selection| {
+        let [a, b, c, d] = selection.corners;
         let vertex = |i: Option<usize>| i.map_or(witness, corner);
         let vertices @ [a, b, c, d] = [vertex(a), vertex(b), vertex(c), vertex(d)];
-        let on_1 = Vectors::of(vertices, |vertex| shape.vertex(vertex));
+        let on_1 = DVec3x4::gather(vertices, |vertex| shape.vertex(vertex));
         let distance = distance(on_1);
-        let on_2 = pose.points_to_2(on_1 + Vectors::along(normal, distance));
+        let on_2 = pose.points_to_2(on_1 + DVec3x4::scaled(normal, distance));
         let features = |vertex| [Feature::Vertex(vertex), proximity.features[1]];
         Contacts {
-            on_1: on_1.as_f32(),
-            on_2: on_2.as_f32(),
-            distance: as_f32(distance),
+            on_1: on_1.to_f32x4(),
+            on_2: on_2.to_f32x4(),
+            distance: to_f32x4(distance),
             features: [features(a), features(b), features(c), features(d)],
-            len: chosen.len,
+            len: selection.len,
         }
     };
-    let mut chosen = Chosen::default();
-    chosen.push(None);
+    let mut selection = Selection::default();
+    selection.push(None);
     if shape.face_normal(face).dot(normal) <= EDGE_ON {
-        return contacts(&chosen);
+        return contacts(&selection);
     }
     if count <= MAX_POINTS {
         let others = (0..count).filter(|&i| corner(i) != witness);
         others
             .take(MAX_POINTS - 1)
-            .for_each(|i| chosen.push(Some(i)));
-        return contacts(&chosen);
+            .for_each(|i| selection.push(Some(i)));
+        return contacts(&selection);
     }
     let ClipScratch {
-        polygons: Polygons {
+        clipper: Clipper {
             window, corners, ..
         },
         candidates,
         ..
     } = scratch;
-    let plane = Frame::new(origin, normal).chart();
+    let plane = ContactFrame::new(origin, normal).projection();
     window.set(count, |numbers| {
-        plane.flatten(shape.four_corners(polygon, numbers))
+        plane.flatten(shape.face_points_x4(polygon, numbers))
     });
     corners.set(window);
     let distances = |row: usize, _, _| {
         let of_lane = |lane| shape.vertex(corner(LANES * row + lane));
-        as_f32(distance(Vectors::of([0, 1, 2, 3], of_lane)))
+        to_f32x4(distance(DVec3x4::gather([0, 1, 2, 3], of_lane)))
     };
     let range = f32::NEG_INFINITY..=max_distance as f32;
     let same = SAME_POINT * shape.radius() as f32;
     candidates.set(corners, distances, range, same);
-    chosen.push_all(candidates.spread(corners, Vec2::ZERO, same));
-    chosen.fill_up(candidates);
-    contacts(&chosen)
+    selection.push_all(candidates.spread_out(corners, Vec2::ZERO, same));
+    selection.fill_up(candidates);
+    contacts(&selection)
 }

@@ -23,9 +23,9 @@ use crate::query::Proximity;
 use crate::support::{Cso, Polytope};
 use crate::tolerance::SAME_DEPTH;
 use crate::tuning::SAME_POINT;
-use clip::Polygons;
-use patch::Patch;
-use plane::FacePlane;
+use clip::Clipper;
+use patch::ContactPatch;
+use plane::FaceHeight;
 use reduce::Candidates;
 
 pub use contacts::{ContactPoint, Contacts, MAX_POINTS};
@@ -35,19 +35,19 @@ pub use half_space::half_space_contacts;
 /// Memory for manifolds, kept from one to the next so that none of them allocates.
 #[derive(Clone, Debug, Default)]
 pub struct ClipScratch {
-    planes: [Vec<FacePlane>; 2],
-    polygons: Polygons,
+    planes: [Vec<FaceHeight>; 2],
+    clipper: Clipper,
     candidates: Candidates,
 }
 
 /// Which corners of the contact patch become contacts; `None` is the witness of the query.
 #[derive(Default)]
-struct Chosen {
+struct Selection {
     corners: [Option<usize>; MAX_POINTS],
     len: usize,
 }
 
-impl Chosen {
+impl Selection {
     #[inline(always)]
     fn push(&mut self, corner: Option<usize>) {
         self.corners[self.len] = corner;
@@ -70,7 +70,7 @@ impl Chosen {
     #[inline(always)]
     fn fill_up(&mut self, candidates: &mut Candidates) {
         while self.len < MAX_POINTS
-            && let Some(corner) = candidates.take_beyond()
+            && let Some(corner) = candidates.pop_beyond_range()
         {
             self.push(Some(corner));
         }
@@ -96,38 +96,38 @@ pub fn contacts<A: Polytope, B: Polytope>(
 ) -> Contacts {
     let ClipScratch {
         planes,
-        polygons,
+        clipper,
         candidates,
     } = scratch;
-    let patch = Patch::new(cso, proximity, proximity.normal, planes);
+    let patch = ContactPatch::new(cso, proximity, proximity.normal, planes);
     let Some(patch) = &patch else {
         return Contacts::witness(proximity, cso.pose);
     };
     // Along the query's normal nothing is deeper than the query's answer.
     let least = proximity.signed_distance;
-    let scale = cso.smaller_radius();
-    patch.clip(cso, polygons);
-    let corners = &polygons.corners;
+    let scale = cso.min_radius();
+    patch.clip(cso, clipper);
+    let corners = &clipper.corners;
     let distances = |_, x, y| patch.distances(x, y);
     let range = f32::NEG_INFINITY..=max_distance as f32;
     let same = SAME_POINT * scale as f32;
-    let survey = candidates.set(corners, distances, range, same);
+    let summary = candidates.set(corners, distances, range, same);
     let mut first = None;
     // Over two faces the distance is linear, so a corner is deepest. A witness that is no corner
     // and no deeper (somewhere inside of two parallel faces) must not take a corner's place.
-    if !survey.at_origin
-        && let Some(deepest) = survey.deepest
+    if !summary.at_origin
+        && let Some(deepest) = summary.deepest
         && f64::from(candidates.distance(deepest)) <= least + SAME_DEPTH * scale
     {
         first = Some(deepest);
     }
-    let mut chosen = Chosen::default();
-    chosen.push(first);
+    let mut selection = Selection::default();
+    selection.push(first);
     let first_at = first.map_or(Vec2::ZERO, |corner| corners.at(corner));
-    chosen.push_all(candidates.spread(corners, first_at, same));
-    chosen.fill_up(candidates);
+    selection.push_all(candidates.spread_out(corners, first_at, same));
+    selection.fill_up(candidates);
     let witness = (least, proximity.features);
-    patch.contacts(cso, witness, (polygons, candidates), &chosen)
+    patch.contacts(cso, witness, (clipper, candidates), &selection)
 }
 
 #[cfg(test)]
@@ -139,7 +139,7 @@ mod tests {
     use crate::epa::EpaScratch;
     use crate::hull::Hull;
     use crate::pose::RelativePose;
-    use crate::query::{Answer, Feature, Memory, Query};
+    use crate::query::{Answer, Feature, PairMemory, Query};
     use crate::stats::Cost;
 
     fn prism(sides: u32, radius: f32) -> Hull {
@@ -156,7 +156,10 @@ mod tests {
         match feature {
             Feature::Vertex(v) => shape.vertex(v).distance(point),
             Feature::Edge(e) => {
-                let [a, b] = shape.edge(e).expect("an edge").map(|v| shape.vertex(v));
+                let [a, b] = shape
+                    .edge_ends(e)
+                    .expect("an edge")
+                    .map(|v| shape.vertex(v));
                 let along = (point - a).dot(b - a) / (b - a).length_squared();
                 a.lerp(b, along.clamp(0.0, 1.0)).distance(point)
             }
@@ -184,11 +187,11 @@ mod tests {
             let answer = Query {
                 cso: &cso,
                 max_distance: 0.1,
-                shells: None,
+                polytope_cache: None,
                 scratch: &mut EpaScratch::default(),
                 cost: &mut Cost::default(),
             }
-            .run(&Memory::None);
+            .run(&PairMemory::None);
             let Some((Answer::Near(near), _)) = answer else {
                 panic!("no contact: {answer:?}");
             };

@@ -4,19 +4,19 @@ use glam::{DVec3, Vec2, Vec3};
 use wide::f32x4;
 
 use super::polygon::LANES;
-use crate::both::both;
+use crate::both::map_pair;
 use crate::pose::RelativePose;
 use crate::support::{FaceId, Polytope};
 use crate::tuning::EDGE_ON;
 
 /// The contact plane as a shape sees it. Its origin is the witness point of shape 1.
-pub(super) struct Frame {
+pub(super) struct ContactFrame {
     origin: DVec3,
     pub normal: DVec3,
     axes: [DVec3; 2],
 }
 
-impl Frame {
+impl ContactFrame {
     #[inline(always)]
     pub fn new(origin: DVec3, normal: DVec3) -> Self {
         let u = normal.any_orthonormal_vector();
@@ -29,25 +29,25 @@ impl Frame {
 
     /// The same plane in the frame of shape 2.
     #[inline(always)]
-    pub fn seen_from_2(&self, pose: &RelativePose) -> Self {
+    pub fn in_frame_2(&self, pose: &RelativePose) -> Self {
         Self {
             origin: pose.point_to_2(self.origin),
             normal: pose.direction_to_2(self.normal),
-            axes: both(self.axes, |axis| pose.direction_to_2(axis)),
+            axes: map_pair(self.axes, |axis| pose.direction_to_2(axis)),
         }
     }
 
     /// The plane of a face whose outward normal is along the contact normal, times `sign`; none if it is
     /// seen from behind or edge-on.
     #[inline(always)]
-    pub fn plane(&self, shape: &impl Polytope, face: FaceId, sign: f32) -> Option<FacePlane> {
+    pub fn plane(&self, shape: &impl Polytope, face: FaceId, sign: f32) -> Option<FaceHeight> {
         let (outward, offset) = self.plane_beyond_origin(shape, face, sign)?;
         let along = outward.dot(self.normal);
         let slope = |axis| (-outward.dot(axis) / along) as f32;
-        (along * f64::from(sign) > EDGE_ON).then(|| FacePlane {
+        (along * f64::from(sign) > EDGE_ON).then(|| FaceHeight {
             face,
             base: (offset / along) as f32,
-            slope: Vec2::from(both(self.axes, slope)),
+            slope: Vec2::from(map_pair(self.axes, slope)),
         })
     }
 
@@ -63,7 +63,7 @@ impl Frame {
         match shape.face_len(face) {
             1 => None,
             2 => {
-                let [from, to] = both([0, 1], |i| shape.vertex(shape.face_vertex(face, i)));
+                let [from, to] = map_pair([0, 1], |i| shape.vertex(shape.face_vertex(face, i)));
                 let along = (to - from).try_normalize()?;
                 let across = self.normal - along * along.dot(self.normal);
                 let outward = (across * f64::from(sign)).try_normalize()?;
@@ -77,20 +77,20 @@ impl Frame {
     }
 
     #[inline(always)]
-    pub fn chart(&self) -> Chart {
+    pub fn projection(&self) -> PlaneProjection {
         let origin = self.origin.as_vec3();
-        Chart {
+        PlaneProjection {
             origin,
             rest: (self.origin - origin.as_dvec3()).as_vec3(),
             normal: self.normal.as_vec3(),
-            axes: both(self.axes, |axis| axis.as_vec3()),
+            axes: map_pair(self.axes, |axis| axis.as_vec3()),
         }
     }
 }
 
 /// Between a shape's space and the contact plane, in f32: beside the witness coordinates are small, and
 /// errors are no larger than those of f32 vertices.
-pub(super) struct Chart {
+pub(super) struct PlaneProjection {
     /// The plane's origin in two parts: what f32 holds of it, and the rest. So what is near loses
     /// nothing where the shape is large.
     origin: Vec3,
@@ -99,7 +99,7 @@ pub(super) struct Chart {
     axes: [Vec3; 2],
 }
 
-impl Chart {
+impl PlaneProjection {
     /// Four points into the plane, coordinate by coordinate.
     #[inline(always)]
     pub fn flatten(&self, points: [Vec3; LANES]) -> [f32x4; 2] {
@@ -108,7 +108,7 @@ impl Chart {
         let x = from_origin([a.x, b.x, c.x, d.x], self.origin.x, self.rest.x);
         let y = from_origin([a.y, b.y, c.y, d.y], self.origin.y, self.rest.y);
         let z = from_origin([a.z, b.z, c.z, d.z], self.origin.z, self.rest.z);
-        both(self.axes, |axis| x * axis.x + y * axis.y + z * axis.z)
+        map_pair(self.axes, |axis| x * axis.x + y * axis.y + z * axis.z)
     }
 
     /// The points over places in the plane.
@@ -125,13 +125,13 @@ impl Chart {
 
 /// The plane of a face over the contact plane: `height(x) = base + slope · x` along the normal.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct FacePlane {
+pub(super) struct FaceHeight {
     pub face: FaceId,
     base: f32,
     slope: Vec2,
 }
 
-impl FacePlane {
+impl FaceHeight {
     #[inline(always)]
     pub fn heights(&self, x: f32x4, y: f32x4) -> f32x4 {
         x * self.slope.x + y * self.slope.y + self.base

@@ -13,7 +13,7 @@ pub(super) const ALL: u32 = (1 << LANES) - 1;
 
 /// A polygon; its last row is filled up with its first corner.
 #[derive(Clone, Debug)]
-pub(super) struct Polygon {
+pub(super) struct PolygonRows {
     pub count: usize,
     /// There may be more than it has, and there is always one.
     rows: Vec<Row>,
@@ -32,7 +32,7 @@ pub(super) struct Row {
     pub inside: f32x4,
 }
 
-impl Default for Polygon {
+impl Default for PolygonRows {
     fn default() -> Self {
         Self {
             count: 0,
@@ -41,7 +41,7 @@ impl Default for Polygon {
     }
 }
 
-impl Polygon {
+impl PolygonRows {
     /// Becomes the polygon of so many corners, which `corners` has by four numbers.
     #[inline(always)]
     pub fn set(&mut self, count: usize, corners: impl Fn([usize; LANES]) -> [f32x4; 2]) {
@@ -105,7 +105,7 @@ impl Polygon {
 
     /// The bits of those corners of a row that do not fill up.
     #[inline(always)]
-    pub fn real(&self, row: usize) -> u32 {
+    pub fn vertex_mask(&self, row: usize) -> u32 {
         first_lanes(self.count - LANES * row)
     }
 }
@@ -123,7 +123,7 @@ impl Row {
     /// Without sides.
     #[inline(always)]
     fn new([x, y]: [f32x4; 2]) -> Self {
-        let inside = lanes(ALL);
+        let inside = lane_mask(ALL);
         Self {
             x,
             y,
@@ -153,7 +153,7 @@ impl Row {
 
     /// Whether a point is inside of these sides of a clockwise polygon.
     #[inline(always)]
-    pub fn holds(&self, x: f32x4, y: f32x4) -> bool {
+    pub fn contains(&self, x: f32x4, y: f32x4) -> bool {
         let heights = (x - self.x) * self.along_y - (y - self.y) * self.along_x;
         heights.simd_ge(-self.slack).all()
     }
@@ -192,7 +192,7 @@ impl Line {
 }
 
 /// A side of a polygon, in all lanes.
-pub(super) struct Side {
+pub(super) struct EdgeLanes {
     pub x: f32x4,
     pub y: f32x4,
     along_x: f32x4,
@@ -207,7 +207,7 @@ pub(super) struct Crossings {
     pub there: u32,
 }
 
-impl Side {
+impl EdgeLanes {
     /// That of a corner in a row.
     #[inline(always)]
     pub fn new(row: &Row, lane: usize) -> Self {
@@ -224,7 +224,7 @@ impl Side {
     /// Strikes the other polygon's corners below this side from those inside, and tells where its sides
     /// cross this one.
     #[inline(always)]
-    pub fn cut(&self, other: &mut Row) -> Crossings {
+    pub fn clip_row(&self, other: &mut Row) -> Crossings {
         let (from_x, from_y) = (other.x - self.x, other.y - self.y);
         let (to_x, to_y) = (from_x + other.along_x, from_y + other.along_y);
         let from = from_y * self.along_x - from_x * self.along_y;
@@ -254,7 +254,7 @@ pub(super) fn first_lanes(count: usize) -> u32 {
 
 /// A mask of the lanes whose bits are set.
 #[inline(always)]
-pub(super) fn lanes(bits: u32) -> f32x4 {
+pub(super) fn lane_mask(bits: u32) -> f32x4 {
     const MASKS: [[u32; LANES]; 1 << LANES] = {
         let mut masks = [[0; LANES]; 1 << LANES];
         let mut i = 0;

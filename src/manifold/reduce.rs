@@ -6,20 +6,20 @@ use glam::Vec2;
 use wide::f32x4;
 
 use super::MAX_POINTS;
-use super::clip::Corners;
-use super::polygon::{LANES, first_lanes, lanes};
+use super::clip::ClipVertices;
+use super::polygon::{LANES, first_lanes, lane_mask};
 
 /// Corners to choose from, by their numbers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Candidates {
     /// There may be more than are in use.
-    fours: Vec<Four>,
+    fours: Vec<CandidateRow>,
     rows: usize,
 }
 
 /// Four corners; some of the last ones are none.
 #[derive(Clone, Copy, Debug, Default)]
-struct Four {
+struct CandidateRow {
     x: f32x4,
     y: f32x4,
     /// From the first face to the second, along the contact normal.
@@ -31,7 +31,7 @@ struct Four {
 }
 
 /// What there is to choose from.
-pub(super) struct Survey {
+pub(super) struct CandidateSummary {
     /// The corner where the faces are nearest or overlap most.
     pub deepest: Option<usize>,
     /// Whether one is at the origin of the contact plane.
@@ -39,7 +39,7 @@ pub(super) struct Survey {
 }
 
 /// The greatest of many measures, of those that tie the first in the lowest lane.
-struct Greatest {
+struct ArgMaxRow {
     measures: f32x4,
     /// The row of each, as bits.
     rows: f32x4,
@@ -48,10 +48,10 @@ struct Greatest {
 /// The bits of no row.
 const NOWHERE: u32 = u32::MAX;
 
-impl Greatest {
+impl ArgMaxRow {
     /// Above `least`.
     #[inline(always)]
-    fn above(least: f32) -> Self {
+    fn new(least: f32) -> Self {
         Self {
             measures: f32x4::splat(least),
             rows: f32x4::splat(f32::from_bits(NOWHERE)),
@@ -60,7 +60,7 @@ impl Greatest {
 
     /// Looks at the measures of a row, those in the `wanted` lanes.
     #[inline(always)]
-    fn look_at(&mut self, row: usize, measures: f32x4, wanted: f32x4) {
+    fn update(&mut self, row: usize, measures: f32x4, wanted: f32x4) {
         let greater = measures.simd_gt(self.measures) & wanted;
         let row = f32x4::splat(f32::from_bits(row as u32));
         self.measures = greater.bitselect(measures, self.measures);
@@ -69,7 +69,7 @@ impl Greatest {
 
     /// The number of the corner that it is of.
     #[inline(always)]
-    fn corner(self) -> Option<usize> {
+    fn finish(self) -> Option<usize> {
         let measures = self.measures.to_array();
         let greater = |a: usize, b: usize| if measures[b] > measures[a] { b } else { a };
         let lane = greater(greater(0, 1), greater(2, 3));
@@ -85,26 +85,26 @@ impl Candidates {
     #[inline(always)]
     pub fn set(
         &mut self,
-        corners: &Corners,
+        corners: &ClipVertices,
         distances: impl Fn(usize, f32x4, f32x4) -> f32x4,
         range: RangeInclusive<f32>,
         same: f32,
-    ) -> Survey {
+    ) -> CandidateSummary {
         self.rows = corners.count.div_ceil(LANES);
         if self.fours.len() < self.rows {
-            self.fours.resize(self.rows, Four::default());
+            self.fours.resize(self.rows, CandidateRow::default());
         }
         let (least, most) = (f32x4::splat(*range.start()), f32x4::splat(*range.end()));
-        let mut deepest = Greatest::above(f32::NEG_INFINITY);
+        let mut deepest = ArgMaxRow::new(f32::NEG_INFINITY);
         let mut at_origin = f32x4::ZERO;
         for (row, (four, [x, y])) in self.fours.iter_mut().zip(corners.fours()).enumerate() {
             let distance = distances(row, x, y);
-            let corners = lanes(first_lanes(corners.count - LANES * row));
+            let corners = lane_mask(first_lanes(corners.count - LANES * row));
             let there = corners & distance.simd_ge(least);
             let near = there & distance.simd_le(most);
-            deepest.look_at(row, -distance, near);
+            deepest.update(row, -distance, near);
             at_origin |= near & (x * x + y * y).simd_le(f32x4::splat(same * same));
-            *four = Four {
+            *four = CandidateRow {
                 x,
                 y,
                 distance,
@@ -112,14 +112,14 @@ impl Candidates {
                 beyond: there ^ near,
             };
         }
-        Survey {
-            deepest: deepest.corner(),
+        CandidateSummary {
+            deepest: deepest.finish(),
             at_origin: at_origin.any(),
         }
     }
 
     #[inline(always)]
-    fn fours(&self) -> impl Iterator<Item = &Four> {
+    fn fours(&self) -> impl Iterator<Item = &CandidateRow> {
         self.fours[..self.rows].iter()
     }
 
@@ -132,13 +132,13 @@ impl Candidates {
 
     /// The nearest of the corners beyond the range, which is then no longer among them.
     #[inline(always)]
-    pub fn take_beyond(&mut self) -> Option<usize> {
-        let mut nearest = Greatest::above(f32::NEG_INFINITY);
+    pub fn pop_beyond_range(&mut self) -> Option<usize> {
+        let mut nearest = ArgMaxRow::new(f32::NEG_INFINITY);
         for (row, four) in self.fours().enumerate() {
-            nearest.look_at(row, -four.distance, four.beyond);
+            nearest.update(row, -four.distance, four.beyond);
         }
-        let corner = nearest.corner()?;
-        self.fours[corner / LANES].beyond &= lanes(!(1 << (corner % LANES)));
+        let corner = nearest.finish()?;
+        self.fours[corner / LANES].beyond &= lane_mask(!(1 << (corner % LANES)));
         Some(corner)
     }
 
@@ -146,29 +146,29 @@ impl Candidates {
     /// farthest from the line through both, and the farthest on its other side. None of them is
     /// nearer than `same` to another.
     #[inline(always)]
-    pub fn spread(
+    pub fn spread_out(
         &self,
-        corners: &Corners,
+        corners: &ClipVertices,
         first: Vec2,
         same: f32,
     ) -> [Option<usize>; MAX_POINTS - 1] {
-        let Some(far) = self.greatest(first, same * same, |x, y| x * x + y * y) else {
+        let Some(far) = self.arg_max(first, same * same, |x, y| x * x + y * y) else {
             return [None; MAX_POINTS - 1];
         };
         let line = corners.at(far) - first;
         // Areas over the line are heights times its length.
         let least = same * line.length();
-        let [mut left, mut right] = [Greatest::above(least), Greatest::above(least)];
+        let [mut left, mut right] = [ArgMaxRow::new(least), ArgMaxRow::new(least)];
         for (row, four) in self.fours().enumerate() {
             let area = (four.y - first.y) * line.x - (four.x - first.x) * line.y;
-            left.look_at(row, area, four.near);
-            right.look_at(row, -area, four.near);
+            left.update(row, area, four.near);
+            right.update(row, -area, four.near);
         }
-        match (left.corner(), right.corner()) {
+        match (left.finish(), right.finish()) {
             // A patch on one side of the line: the last corner adds most area to the triangle.
             (Some(side), None) | (None, Some(side)) => {
                 let apex = corners.at(side) - first;
-                let third = self.greatest(first, least, |x, y| added_area(x, y, line, apex));
+                let third = self.arg_max(first, least, |x, y| added_area(x, y, line, apex));
                 [Some(far), Some(side), third]
             }
             (left, right) => [Some(far), left, right],
@@ -177,18 +177,18 @@ impl Candidates {
 
     /// The corner with the greatest measure above `least`; its place is that from `first`.
     #[inline(always)]
-    fn greatest(
+    fn arg_max(
         &self,
         first: Vec2,
         least: f32,
         measure: impl Fn(f32x4, f32x4) -> f32x4,
     ) -> Option<usize> {
-        let mut greatest = Greatest::above(least);
+        let mut greatest = ArgMaxRow::new(least);
         for (row, four) in self.fours().enumerate() {
             let measures = measure(four.x - first.x, four.y - first.y);
-            greatest.look_at(row, measures, four.near);
+            greatest.update(row, measures, four.near);
         }
-        greatest.corner()
+        greatest.finish()
     }
 }
 

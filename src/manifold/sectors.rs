@@ -7,12 +7,12 @@
 
 use glam::Vec2;
 
-use super::clip::Corners;
-use super::polygon::{Line, Polygon};
+use super::clip::ClipVertices;
+use super::polygon::{Line, PolygonRows};
 
 /// The sectors of a polygon, and the one that was entered last.
 struct Sectors<'p> {
-    polygon: &'p Polygon,
+    polygon: &'p PolygonRows,
     center: Vec2,
     /// 1 if it is counter-clockwise, -1 if it is clockwise.
     turn: f32,
@@ -21,7 +21,7 @@ struct Sectors<'p> {
 
 impl<'p> Sectors<'p> {
     /// `None` for a polygon that is too thin.
-    fn new(polygon: &'p Polygon, turn: f32) -> Option<Self> {
+    fn new(polygon: &'p PolygonRows, turn: f32) -> Option<Self> {
         let center = center(polygon)?;
         let sectors = Self {
             polygon,
@@ -44,7 +44,7 @@ impl<'p> Sectors<'p> {
         }
     }
 
-    fn holds(&self, sector: usize, p: Vec2) -> bool {
+    fn contains(&self, sector: usize, p: Vec2) -> bool {
         let dir = p - self.center;
         let from = self.polygon.side(sector).at - self.center;
         let to = self.polygon.side(self.after(sector, 1)).at - self.center;
@@ -54,7 +54,9 @@ impl<'p> Sectors<'p> {
     /// Goes to the sector of a point. In the centre any is as good.
     fn enter(&mut self, p: Vec2) {
         let mut sectors = 0..self.polygon.count;
-        self.at = sectors.find(|&sector| self.holds(sector, p)).unwrap_or(0);
+        self.at = sectors
+            .find(|&sector| self.contains(sector, p))
+            .unwrap_or(0);
     }
 
     /// Goes on to the sector of `q` as one goes straight from `p`, the point of the present one. The
@@ -65,7 +67,7 @@ impl<'p> Sectors<'p> {
         let forth = (p - self.center).perp_dot(q - self.center) * self.turn >= 0.0;
         let step = if forth { 1 } else { count - 1 };
         let mut steps = 0;
-        while steps < count && !self.holds(self.at, q) {
+        while steps < count && !self.contains(self.at, q) {
             self.at = self.after(self.at, step);
             steps += 1;
         }
@@ -84,8 +86,12 @@ impl<'p> Sectors<'p> {
 }
 
 /// Adds the corners of the intersection to `corners`, unless a polygon is too thin for sectors: then
-/// the answer is `false`. Their sources are those of [`Polygons`](super::clip::Polygons).
-pub(super) fn intersect(window: &Polygon, subject: &Polygon, corners: &mut Corners) -> bool {
+/// the answer is `false`. Their sources are those of [`Clipper`](super::clip::Clipper).
+pub(super) fn intersect(
+    window: &PolygonRows,
+    subject: &PolygonRows,
+    corners: &mut ClipVertices,
+) -> bool {
     let sectors = [Sectors::new(window, 1.0), Sectors::new(subject, -1.0)];
     let [Some(mut of_window), Some(mut of_subject)] = sectors else {
         return false;
@@ -119,7 +125,7 @@ pub(super) fn intersect(window: &Polygon, subject: &Polygon, corners: &mut Corne
 }
 
 /// The centre of a polygon's area.
-fn center(polygon: &Polygon) -> Option<Vec2> {
+fn center(polygon: &PolygonRows) -> Option<Vec2> {
     let origin: Line = polygon.side(0);
     let (mut area, mut moment) = (0.0, Vec2::ZERO);
     for i in 1..polygon.count - 1 {

@@ -19,7 +19,7 @@ impl Ball {
     }
 
     /// The width of the border around the core.
-    pub fn border(&self) -> f64 {
+    pub fn border_radius(&self) -> f64 {
         self.radius
     }
 }
@@ -76,22 +76,22 @@ impl Polytope for Ball {
     }
 
     #[inline]
-    fn face_at(&self, _: VertexId, _: DVec3) -> FaceId {
+    fn face_at_vertex(&self, _: VertexId, _: DVec3) -> FaceId {
         0
     }
 
     #[inline]
-    fn face_beside(&self, _: u32, _: DVec3) -> FaceId {
+    fn face_at_edge(&self, _: u32, _: DVec3) -> FaceId {
         0
     }
 
     #[inline]
-    fn edge_id(&self, _: VertexId, _: VertexId) -> Option<u32> {
+    fn edge_between(&self, _: VertexId, _: VertexId) -> Option<u32> {
         None
     }
 
     #[inline]
-    fn edge(&self, _: u32) -> Option<[VertexId; 2]> {
+    fn edge_ends(&self, _: u32) -> Option<[VertexId; 2]> {
         None
     }
 }

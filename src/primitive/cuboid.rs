@@ -54,12 +54,12 @@ impl Support for CuboidPolytope {
     }
 
     #[inline]
-    fn start(&self, dir: DVec3) -> VertexId {
+    fn start_vertex(&self, dir: DVec3) -> VertexId {
         Self::corner(dir)
     }
 
     #[inline]
-    fn valid_start(&self, vertex: VertexId) -> VertexId {
+    fn clamp_vertex(&self, vertex: VertexId) -> VertexId {
         vertex & 7
     }
 
@@ -110,7 +110,7 @@ impl Polytope for CuboidPolytope {
     }
 
     #[inline]
-    fn face_at(&self, vertex: VertexId, dir: DVec3) -> FaceId {
+    fn face_at_vertex(&self, vertex: VertexId, dir: DVec3) -> FaceId {
         let mut best = (f64::NEG_INFINITY, 0);
         for k in 0..3 {
             let positive = vertex >> k & 1 == 1;
@@ -123,8 +123,8 @@ impl Polytope for CuboidPolytope {
     }
 
     #[inline]
-    fn face_beside(&self, edge: u32, dir: DVec3) -> FaceId {
-        let ends = self.edge(edge).unwrap_or_default();
+    fn face_at_edge(&self, edge: u32, dir: DVec3) -> FaceId {
+        let ends = self.edge_ends(edge).unwrap_or_default();
         // Of the three faces at an end, the edge has those that do not cut across it.
         let along = (ends[0] ^ ends[1]).trailing_zeros().min(2);
         let mut across = dir;
@@ -133,19 +133,19 @@ impl Polytope for CuboidPolytope {
         } else {
             f64::INFINITY
         };
-        self.face_at(ends[0], across)
+        self.face_at_vertex(ends[0], across)
     }
 
     #[inline]
-    fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32> {
+    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<u32> {
         let (low, high) = (from.min(to), from.max(to));
         (high < 8 && (low ^ high).is_power_of_two()).then_some(low << 3 | high)
     }
 
     #[inline]
-    fn edge(&self, id: u32) -> Option<[VertexId; 2]> {
+    fn edge_ends(&self, id: u32) -> Option<[VertexId; 2]> {
         let ends = [id >> 3, id & 7];
-        (self.edge_id(ends[0], ends[1]) == Some(id)).then_some(ends)
+        (self.edge_between(ends[0], ends[1]) == Some(id)).then_some(ends)
     }
 }
 
@@ -171,8 +171,8 @@ mod tests {
                     cuboid.face_vertex(face, i),
                     cuboid.face_vertex(face, (i + 1) % 4),
                 );
-                let edge = cuboid.edge_id(a, b).expect("neighbours share an edge");
-                assert_eq!(cuboid.edge(edge), Some([a.min(b), a.max(b)]));
+                let edge = cuboid.edge_between(a, b).expect("neighbours share an edge");
+                assert_eq!(cuboid.edge_ends(edge), Some([a.min(b), a.max(b)]));
             }
         }
     }

@@ -10,18 +10,21 @@ use crate::support::{FaceId, Polytope, Support, VertexId};
 #[derive(Clone, Copy, Debug)]
 pub struct Segment {
     ends: [DVec3; 2],
-    border: f64,
+    border_radius: f64,
 }
 
 impl Segment {
     /// A segment between two points, the core of a capsule whose radius is `border`.
-    pub fn new(ends: [DVec3; 2], border: f64) -> Self {
-        Self { ends, border }
+    pub fn new(ends: [DVec3; 2], border_radius: f64) -> Self {
+        Self {
+            ends,
+            border_radius,
+        }
     }
 
     /// The width of the border around the core.
-    pub fn border(&self) -> f64 {
-        self.border
+    pub fn border_radius(&self) -> f64 {
+        self.border_radius
     }
 }
 
@@ -41,7 +44,7 @@ impl Support for Segment {
     }
 
     #[inline]
-    fn valid_start(&self, vertex: VertexId) -> VertexId {
+    fn clamp_vertex(&self, vertex: VertexId) -> VertexId {
         vertex & 1
     }
 
@@ -53,7 +56,7 @@ impl Support for Segment {
     /// With the border: the core alone may be a point, without any length.
     #[inline]
     fn radius(&self) -> f64 {
-        0.5 * self.ends[0].distance(self.ends[1]) + self.border
+        0.5 * self.ends[0].distance(self.ends[1]) + self.border_radius
     }
 }
 
@@ -95,22 +98,22 @@ impl Polytope for Segment {
     }
 
     #[inline]
-    fn face_at(&self, _: VertexId, _: DVec3) -> FaceId {
+    fn face_at_vertex(&self, _: VertexId, _: DVec3) -> FaceId {
         0
     }
 
     #[inline]
-    fn face_beside(&self, _: u32, _: DVec3) -> FaceId {
+    fn face_at_edge(&self, _: u32, _: DVec3) -> FaceId {
         0
     }
 
     #[inline]
-    fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32> {
+    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<u32> {
         (from.max(to) == 1 && from != to).then_some(0)
     }
 
     #[inline]
-    fn edge(&self, id: u32) -> Option<[VertexId; 2]> {
+    fn edge_ends(&self, id: u32) -> Option<[VertexId; 2]> {
         (id == 0).then_some([0, 1])
     }
 }

@@ -47,7 +47,7 @@ impl Support for TrianglePolytope {
     }
 
     #[inline]
-    fn valid_start(&self, vertex: VertexId) -> VertexId {
+    fn clamp_vertex(&self, vertex: VertexId) -> VertexId {
         if vertex < 3 { vertex } else { 0 }
     }
 
@@ -102,24 +102,24 @@ impl Polytope for TrianglePolytope {
     }
 
     #[inline]
-    fn face_at(&self, _: VertexId, dir: DVec3) -> FaceId {
+    fn face_at_vertex(&self, _: VertexId, dir: DVec3) -> FaceId {
         FaceId::from(self.normal.dot(dir) < 0.0)
     }
 
     #[inline]
-    fn face_beside(&self, _: u32, dir: DVec3) -> FaceId {
-        self.face_at(0, dir)
+    fn face_at_edge(&self, _: u32, dir: DVec3) -> FaceId {
+        self.face_at_vertex(0, dir)
     }
 
     #[inline]
-    fn edge_id(&self, from: VertexId, to: VertexId) -> Option<u32> {
+    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<u32> {
         let (low, high) = (from.min(to), from.max(to));
         (low < high && high < 3).then_some(low << 2 | high)
     }
 
     #[inline]
-    fn edge(&self, id: u32) -> Option<[VertexId; 2]> {
+    fn edge_ends(&self, id: u32) -> Option<[VertexId; 2]> {
         let ends = [id >> 2, id & 3];
-        (self.edge_id(ends[0], ends[1]) == Some(id)).then_some(ends)
+        (self.edge_between(ends[0], ends[1]) == Some(id)).then_some(ends)
     }
 }

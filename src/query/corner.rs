@@ -8,11 +8,11 @@ use glam::DVec3;
 
 use super::feature::Feature;
 use super::{Answer, Proximity};
-use crate::both::both;
+use crate::both::map_pair;
 use crate::gjk;
 use crate::stats::Cost;
 use crate::support::{Cso, Polytope, VertexId};
-use crate::tolerance::TOUCHING;
+use crate::tolerance::MIN_DIRECTED_DISTANCE;
 
 /// The answer that `features` prove, if both bounds meet or the lower one is out of reach.
 pub(super) fn certify<A: Polytope, B: Polytope>(
@@ -27,17 +27,19 @@ pub(super) fn certify<A: Polytope, B: Polytope>(
     if ends_1[0] != ends_1[1] && ends_2[0] != ends_2[1] {
         return None;
     }
-    let [a, b] = both(ends_1, |v| cso.shape_1.vertex(v));
-    let [c, d] = both(ends_2, |v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
+    let [a, b] = map_pair(ends_1, |v| cso.shape_1.vertex(v));
+    let [c, d] = map_pair(ends_2, |v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
     let (on_1, on_2) = (nearest([a, b], c), nearest([c, d], a));
     let distance = on_1.distance(on_2);
-    if distance.partial_cmp(&(TOUCHING * cso.size())) != Some(std::cmp::Ordering::Greater) {
+    if distance.partial_cmp(&(MIN_DIRECTED_DISTANCE * cso.size()))
+        != Some(std::cmp::Ordering::Greater)
+    {
         return None;
     }
     let normal = (on_2 - on_1) / distance;
     let start = [ends_1[0], ends_2[0]];
     match gjk::test_axis(cso, normal, start, max_distance, cost) {
-        Ok(apart) => Some(Answer::Apart(apart)),
+        Ok(apart) => Some(Answer::Separated(apart)),
         Err(vertex) => {
             (distance + normal.dot(vertex.w) <= tolerance).then_some(Answer::Near(Proximity {
                 signed_distance: distance,
@@ -53,8 +55,8 @@ pub(super) fn certify<A: Polytope, B: Polytope>(
 /// The ends of an edge; a vertex twice. What the shape has not, a memory of another one, has none.
 fn ends(shape: &impl Polytope, feature: Feature) -> Option<[VertexId; 2]> {
     match feature {
-        Feature::Vertex(vertex) => (shape.valid_start(vertex) == vertex).then_some([vertex; 2]),
-        Feature::Edge(edge) => shape.edge(edge),
+        Feature::Vertex(vertex) => (shape.clamp_vertex(vertex) == vertex).then_some([vertex; 2]),
+        Feature::Edge(edge) => shape.edge_ends(edge),
         Feature::Face(_) => None,
     }
 }

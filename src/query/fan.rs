@@ -10,7 +10,7 @@ use std::array;
 
 use glam::DVec3;
 
-use super::feature::{Feature, Side, ball_is_inside};
+use super::feature::{FacetEdge, Feature, ball_is_inside};
 use super::{Proximity, walk};
 use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
 
@@ -22,7 +22,7 @@ const MAX_SIDES: usize = 2;
 
 /// Whether the pyramids under a facet, whose plane supports the difference, and under those across its
 /// sides together hold the ball around the origin that reaches to the plane, up to `tolerance`.
-pub(super) fn holds_ball<A: Polytope, B: Polytope>(
+pub(super) fn contains_ball<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     facet: &Proximity,
     tolerance: f64,
@@ -36,13 +36,13 @@ pub(super) fn holds_ball<A: Polytope, B: Polytope>(
         return false;
     };
     let open: [bool; MAX_CORNERS] =
-        array::from_fn(|i| i < here.len && !pyramids.hold_ball(&here, i));
+        array::from_fn(|i| i < here.len && !pyramids.edge_contains_ball(&here, i));
     let mut open_sides = (0..here.len).filter(|&i| open[i]);
     open_sides.clone().count() <= MAX_SIDES
         && open_sides.all(|i| {
-            let across = walk::across(cso, &here.side(i, facet.normal));
+            let across = walk::adjacent_facet(cso, &here.side(i, facet.normal));
             let there = across.and_then(|next| pyramids.facet(cso, next));
-            there.is_some_and(|there| pyramids.hold_rest([&here, &there], i))
+            there.is_some_and(|there| pyramids.contains_remainder([&here, &there], i))
         })
 }
 
@@ -80,14 +80,14 @@ impl Pyramids {
     }
 
     /// Whether the ball is inside of the plane through a side.
-    fn hold_ball(&self, facet: &Facet, i: usize) -> bool {
+    fn edge_contains_ball(&self, facet: &Facet, i: usize) -> bool {
         let (normal, middle) = self.side_plane(facet, i);
         ball_is_inside(facet.corners[i].w, normal * middle.signum(), self.radius)
     }
 
     /// Whether the second facet is across the side `i` of the first one, and the ball inside of all of its
     /// other sides.
-    fn hold_rest(&self, [here, there]: [&Facet; 2], i: usize) -> bool {
+    fn contains_remainder(&self, [here, there]: [&Facet; 2], i: usize) -> bool {
         let side = here.ends(i).map(|end| end.ids);
         let is_shared = |&k: &usize| {
             let [from, to] = there.ends(k).map(|end| end.ids);
@@ -99,7 +99,8 @@ impl Pyramids {
         };
         let (normal, middle_here) = self.side_plane(here, i);
         let beyond = normal.dot(there.middle - here.corners[i].w);
-        beyond * middle_here < 0.0 && sides.all(|k| k == shared || self.hold_ball(there, k))
+        beyond * middle_here < 0.0
+            && sides.all(|k| k == shared || self.edge_contains_ball(there, k))
     }
 }
 
@@ -129,10 +130,10 @@ impl Facet {
     }
 
     /// A side as walks know it, of the facet with this outward normal.
-    fn side(&self, i: usize, normal: DVec3) -> Side {
+    fn side(&self, i: usize, normal: DVec3) -> FacetEdge {
         let [from, to] = self.ends(i);
         let outward = (to.w - from.w).cross(normal);
-        Side {
+        FacetEdge {
             ends: [from.ids, to.ids],
             normal,
             outward: outward * outward.dot(from.w - self.middle).signum(),
@@ -147,7 +148,7 @@ fn corners<A: Polytope, B: Polytope>(
 ) -> Option<([[VertexId; 2]; MAX_CORNERS], usize)> {
     match features {
         [Feature::Edge(e1), Feature::Edge(e2)] => {
-            let ([a, b], [c, d]) = (cso.shape_1.edge(e1)?, cso.shape_2.edge(e2)?);
+            let ([a, b], [c, d]) = (cso.shape_1.edge_ends(e1)?, cso.shape_2.edge_ends(e2)?);
             let around = [[a, c], [b, c], [b, d], [a, d]];
             Some((array::from_fn(|i| around[i % 4]), 4))
         }
@@ -174,17 +175,17 @@ mod tests {
     use super::*;
     use crate::epa::{self, EpaScratch};
     use crate::hull::Hull;
-    use crate::query::feature::{self, Seeds, Verdict};
+    use crate::query::feature::{self, EpaSeeds, Verdict};
     use crate::query::walk::tests::{direction, random_pose};
     use crate::stats::Cost;
     use crate::tolerance::DEPTH_GAP;
     use glam::Vec3;
 
-    fn hull(dice: &mut oorandom::Rand64) -> Hull {
-        let sizes = [(); 3].map(|()| 0.4 + 0.6 * dice.rand_float());
-        let count = dice.rand_range(8..120);
+    fn hull(rng: &mut oorandom::Rand64) -> Hull {
+        let sizes = [(); 3].map(|()| 0.4 + 0.6 * rng.rand_float());
+        let count = rng.rand_range(8..120);
         let points: Vec<Vec3> = (0..count)
-            .map(|_| (direction(dice) * DVec3::from(sizes)).as_vec3())
+            .map(|_| (direction(rng) * DVec3::from(sizes)).as_vec3())
             .collect();
         Hull::from_points(&points).expect("points on an ellipsoid are their own hull")
     }
@@ -193,35 +194,35 @@ mod tests {
     /// those that are not the nearest are proved of nothing.
     #[test]
     fn only_the_depth_is_proved() {
-        let mut dice = oorandom::Rand64::new(3);
+        let mut rng = oorandom::Rand64::new(3);
         let [mut proved, mut others] = [0; 2];
         for _ in 0..3000 {
-            let hulls = [hull(&mut dice), hull(&mut dice)];
-            let pose = random_pose(1.8, &mut dice);
+            let hulls = [hull(&mut rng), hull(&mut rng)];
+            let pose = random_pose(1.8, &mut rng);
             let cso = Cso {
                 shape_1: &hulls[0],
                 shape_2: &hulls[1],
                 pose: &pose,
             };
             let mut cost = Cost::default();
-            let normal = direction(&mut dice);
+            let normal = direction(&mut rng);
             let vertex = cso.support(normal, [0, 0], &mut cost);
-            let mut next = walk::around(&cso, &vertex, normal);
+            let mut next = walk::facet_at_vertex(&cso, &vertex, normal);
             let candidate = (0..20).find_map(|_| {
                 match feature::certify(&cso, next?, f64::INFINITY, DEPTH_GAP, &mut cost) {
-                    Verdict::Beyond(side) => next = walk::across(&cso, &side),
-                    Verdict::Unproved(candidate) => return Some(candidate),
+                    Verdict::OutsideEdge(side) => next = walk::adjacent_facet(&cso, &side),
+                    Verdict::Undecided(candidate) => return Some(candidate),
                     _ => next = None,
                 }
                 None
             });
             let Some(candidate) = candidate else { continue };
-            let seeds = Seeds::under(&cso, candidate.features);
+            let seeds = EpaSeeds::under(&cso, candidate.features);
             let scratch = &mut EpaScratch::default();
             let depth = epa::penetration(&cso, seeds.as_slice(), scratch, &mut cost);
             let depth = depth.expect("they overlap").depth;
             let excess = -candidate.signed_distance - depth;
-            if holds_ball(&cso, &candidate, DEPTH_GAP) {
+            if contains_ball(&cso, &candidate, DEPTH_GAP) {
                 assert!(excess < 2.0 * DEPTH_GAP, "{excess} deeper than need be");
                 proved += 1;
             } else if excess > 2.0 * DEPTH_GAP {

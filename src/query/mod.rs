@@ -1,11 +1,11 @@
 //! The coherent query: from what the previous frame knew, the cheapest stage that can *prove*
 //! its answer gives it.
 //!
-//! 1. [`Stage::Balls`]: the bounding balls are apart.
+//! 1. [`Stage::BoundingSpheres`]: the bounding spheres are apart.
 //! 2. [`Stage::Axis`]: one support pair along the previous axis still separates.
 //! 3. [`Stage::Feature`]: the previous nearest features still prove distance or depth.
-//! 4. [`Stage::Walk`]: features next to them do.
-//! 5. [`Stage::Shell`]: those features do, with the polytope of the previous expansion.
+//! 4. [`Stage::FacetWalk`]: features next to them do.
+//! 5. [`Stage::CachedPolytope`]: those features do, with the polytope of the previous expansion.
 //! 6. [`Stage::WarmGjk`]: incremental GJK from the previous axis and vertices.
 //! 7. [`Stage::WarmEpa`]: the depth, expanded from the previous features.
 //!
@@ -25,14 +25,14 @@ pub(crate) use feature::{Verdict, vertex_of};
 
 use glam::DVec3;
 
-use crate::epa::{self, Depth, EpaScratch, Penetration, Shells};
+use crate::epa::{self, DepthSearch, EpaScratch, Penetration, PolytopeCache};
 use crate::gjk::{self, Closest, Outcome, SeparatingAxis};
 use crate::simplex::Preferred;
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
 use crate::tolerance::DEPTH_GAP;
 use crate::tuning::{FACET_WALK_RANGE, TILT};
-use feature::Seeds;
+use feature::EpaSeeds;
 
 /// What GJK and EPA count as in a query that goes on from a previous frame, and without one.
 pub(crate) const WARM: [Stage; 2] = [Stage::WarmGjk, Stage::WarmEpa];
@@ -40,7 +40,7 @@ const COLD: [Stage; 2] = [Stage::ColdGjk, Stage::ColdEpa];
 
 /// What is remembered of a pair from one frame to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Memory {
+pub enum PairMemory {
     /// Nothing: the pair is new.
     None,
     /// The shapes were apart along this unit axis (frame 1), at these vertices.
@@ -68,17 +68,17 @@ pub struct Proximity {
 #[derive(Clone, Copy, Debug)]
 pub enum Answer {
     /// Farther apart than the query asked about.
-    Apart(SeparatingAxis),
+    Separated(SeparatingAxis),
     /// This near, or overlapping.
     Near(Proximity),
 }
 
 impl Answer {
     /// What the next frame's query is to be given.
-    pub fn memory(&self) -> Memory {
+    pub fn memory(&self) -> PairMemory {
         match self {
-            Self::Apart(apart) => Memory::Axis(apart.axis, apart.ids),
-            Self::Near(near) => Memory::Contact(near.normal, near.features),
+            Self::Separated(apart) => PairMemory::Axis(apart.axis, apart.ids),
+            Self::Near(near) => PairMemory::Contact(near.normal, near.features),
         }
     }
 }
@@ -87,11 +87,11 @@ impl Answer {
 pub struct Query<'a, 'c, A, B> {
     /// The pair.
     pub cso: &'a Cso<'c, A, B>,
-    /// Answers beyond this distance are [`Answer::Apart`].
+    /// Answers beyond this distance are [`Answer::Separated`].
     pub max_distance: f64,
     /// Polytopes of earlier expansions, and the pair's key among them. They save work where a deep
     /// pair is asked about in every frame, and change no bit of an answer.
-    pub shells: Option<(&'a mut Shells, u64)>,
+    pub polytope_cache: Option<(&'a mut PolytopeCache, u64)>,
     /// Memory for the expanding polytope.
     pub scratch: &'a mut EpaScratch,
     /// Filled in with what the query cost.
@@ -99,17 +99,17 @@ pub struct Query<'a, 'c, A, B> {
 }
 
 impl<A: Support, B: Support> Query<'_, '_, A, B> {
-    /// The stages that need no faces, for shapes that have none: whether the balls are too far apart,
+    /// The stages that need no faces, for shapes that have none: whether the bounding spheres are too far apart,
     /// or the axis that is remembered, or else the line of centres, separates. `None` proves nothing.
-    pub fn prove_apart(&mut self, memory: &Memory) -> Option<(SeparatingAxis, Stage)> {
-        if let Some(apart) = self.test_balls(memory) {
-            return Some((apart, Stage::Balls));
+    pub fn prove_apart(&mut self, memory: &PairMemory) -> Option<(SeparatingAxis, Stage)> {
+        if let Some(apart) = self.spheres_apart(memory) {
+            return Some((apart, Stage::BoundingSpheres));
         }
         let (axis, start) = match *memory {
-            Memory::Axis(axis, ids) => (axis, ids),
+            PairMemory::Axis(axis, ids) => (axis, ids),
             _ => {
                 let axis = self.cso.towards_origin();
-                (axis, self.cso.start(axis))
+                (axis, self.cso.start_vertices(axis))
             }
         };
         let apart = self
@@ -118,17 +118,17 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
         Some((apart.ok()?, Stage::Axis))
     }
 
-    /// Whether the balls around the shapes are too far apart already: no vertex is looked at. What
+    /// Whether the bounding spheres are too far apart already: no vertex is looked at. What
     /// was remembered of the vertices stays.
     #[inline(always)]
-    fn test_balls(&self, memory: &Memory) -> Option<SeparatingAxis> {
-        let (axis, separation) = self.cso.test_balls(self.max_distance)?;
+    fn spheres_apart(&self, memory: &PairMemory) -> Option<SeparatingAxis> {
+        let (axis, separation) = self.cso.spheres_apart(self.max_distance)?;
         Some(SeparatingAxis {
             axis,
             separation,
             ids: match *memory {
-                Memory::Axis(_, ids) => ids,
-                _ => self.cso.start(axis),
+                PairMemory::Axis(_, ids) => ids,
+                _ => self.cso.start_vertices(axis),
             },
         })
     }
@@ -141,14 +141,14 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
         axis: DVec3,
         ids: [VertexId; 2],
     ) -> Result<SeparatingAxis, CsoVertex> {
-        let start = self.valid_start(ids);
+        let start = self.clamp_vertices(ids);
         gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost)
     }
 
-    fn valid_start(&self, ids: [VertexId; 2]) -> [VertexId; 2] {
+    fn clamp_vertices(&self, ids: [VertexId; 2]) -> [VertexId; 2] {
         [
-            self.cso.shape_1.valid_start(ids[0]),
-            self.cso.shape_2.valid_start(ids[1]),
+            self.cso.shape_1.clamp_vertex(ids[0]),
+            self.cso.shape_2.clamp_vertex(ids[1]),
         ]
     }
 }
@@ -163,59 +163,59 @@ fn tilted(axis: DVec3, too_near: &CsoVertex) -> DVec3 {
 impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     /// Answers from `memory` where that is possible, cold otherwise. `None` only if the shapes
     /// have no volume between them or are not finite.
-    pub fn run(&mut self, memory: &Memory) -> Option<(Answer, Stage)> {
-        match self.test_balls(memory) {
-            Some(apart) => Some((Answer::Apart(apart), Stage::Balls)),
+    pub fn run(&mut self, memory: &PairMemory) -> Option<(Answer, Stage)> {
+        match self.spheres_apart(memory) {
+            Some(apart) => Some((Answer::Separated(apart), Stage::BoundingSpheres)),
             None => self.run_near(memory),
         }
     }
 
-    /// As [`run`](Self::run), of a pair whose balls are known not to be too far apart.
-    fn run_near(&mut self, memory: &Memory) -> Option<(Answer, Stage)> {
+    /// As [`run`](Self::run), of a pair whose bounding spheres are known not to be too far apart.
+    fn run_near(&mut self, memory: &PairMemory) -> Option<(Answer, Stage)> {
         match *memory {
-            Memory::None => self.begin(),
-            Memory::Axis(axis, ids) => self.follow_axis(axis, ids, WARM),
-            Memory::Contact(normal, features) => {
+            PairMemory::None => self.start_from_centers(),
+            PairMemory::Axis(axis, ids) => self.start_from_axis(axis, ids, WARM),
+            PairMemory::Contact(normal, features) => {
                 let verdict = self.certify(features);
-                self.follow_contact(normal, features, &verdict)
+                self.start_from_features(normal, features, &verdict)
             }
         }
     }
 
     /// Without memory: along the line of centres.
-    pub(crate) fn begin(&mut self) -> Option<(Answer, Stage)> {
+    pub(crate) fn start_from_centers(&mut self) -> Option<(Answer, Stage)> {
         let axis = self.cso.towards_origin();
-        self.follow_axis(axis, self.cso.start(axis), COLD)
+        self.start_from_axis(axis, self.cso.start_vertices(axis), COLD)
     }
 
-    fn follow_axis(
+    fn start_from_axis(
         &mut self,
         axis: DVec3,
         start: [VertexId; 2],
         gjk: [Stage; 2],
     ) -> Option<(Answer, Stage)> {
         match self.test_axis(axis, start) {
-            Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-            Err(vertex) => self.turn_axis(axis, vertex, gjk),
+            Ok(apart) => Some((Answer::Separated(apart), Stage::Axis)),
+            Err(vertex) => self.start_from_tilted_axis(axis, vertex, gjk),
         }
     }
 
     /// Goes on where an axis does not separate. Often one does that is tilted away from where the shapes
     /// come too near; else the facets around are the next to look at.
-    pub(crate) fn turn_axis(
+    pub(crate) fn start_from_tilted_axis(
         &mut self,
         axis: DVec3,
         vertex: CsoVertex,
         gjk: [Stage; 2],
     ) -> Option<(Answer, Stage)> {
-        if self.is_far_sighted() {
+        if self.skips_facet_walk() {
             return self.run_gjk(&[vertex], gjk);
         }
         let tilted = tilted(axis, &vertex);
         match self.test_axis(tilted, vertex.ids) {
-            Ok(apart) => Some((Answer::Apart(apart), Stage::Axis)),
-            Err(second) => match walk::around(self.cso, &second, tilted) {
-                Some(features) => self.follow(tilted, features, gjk),
+            Ok(apart) => Some((Answer::Separated(apart), Stage::Axis)),
+            Err(second) => match walk::facet_at_vertex(self.cso, &second, tilted) {
+                Some(features) => self.walk_from(tilted, features, gjk),
                 None => self.run_gjk(&[vertex, second], gjk),
             },
         }
@@ -223,24 +223,24 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
 
     /// Two bounds on a depth that differ by at most this count as equal.
     fn tolerance(&self) -> f64 {
-        DEPTH_GAP * self.cso.smaller_radius()
+        DEPTH_GAP * self.cso.min_radius()
     }
 
-    fn is_far_sighted(&self) -> bool {
+    fn skips_facet_walk(&self) -> bool {
         self.max_distance > FACET_WALK_RANGE * self.cso.size()
     }
 
     /// GJK from vertices of the Minkowski difference, and EPA if the shapes overlap.
     fn run_gjk(&mut self, start: &[CsoVertex], stages: [Stage; 2]) -> Option<(Answer, Stage)> {
         match gjk::distance::<Preferred, _, _>(self.cso, start, self.max_distance, self.cost) {
-            Outcome::Apart(apart) => Some((Answer::Apart(apart), stages[0])),
-            Outcome::Near(closest) => Some((self.near(&closest), stages[0])),
-            Outcome::Overlap(simplex) => {
-                let mut seeds = Seeds::default();
+            Outcome::Separated(apart) => Some((Answer::Separated(apart), stages[0])),
+            Outcome::Disjoint(closest) => Some((self.near(&closest), stages[0])),
+            Outcome::Overlapping(simplex) => {
+                let mut seeds = EpaSeeds::default();
                 simplex.vertices().for_each(|vertex| seeds.push(*vertex));
                 let seeds = seeds.as_slice();
                 let depth = epa::penetration(self.cso, seeds, self.scratch, self.cost)?;
-                self.keep_shell();
+                self.store_polytope();
                 Some((self.overlapping(&depth), stages[1]))
             }
         }
@@ -256,21 +256,21 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         gjk: [Stage; 2],
     ) -> Option<(Answer, Stage)> {
         let known = -candidate.signed_distance;
-        if let Some((shells, key)) = &mut self.shells
-            && shells.prove(*key, self.cso, known, self.scratch, self.cost)
+        if let Some((cache, key)) = &mut self.polytope_cache
+            && cache.proves_depth(*key, self.cso, known, self.scratch, self.cost)
         {
-            return Some((Answer::Near(*candidate), Stage::Shell));
+            return Some((Answer::Near(*candidate), Stage::CachedPolytope));
         }
-        if fan::holds_ball(self.cso, candidate, self.tolerance()) {
+        if fan::contains_ball(self.cso, candidate, self.tolerance()) {
             return Some((Answer::Near(*candidate), stage));
         }
-        let seeds = Seeds::under(self.cso, candidate.features);
+        let seeds = EpaSeeds::under(self.cso, candidate.features);
         let (cso, seeds) = (self.cso, seeds.as_slice());
         let depth = epa::penetration_below(cso, seeds, known, self.scratch, self.cost)?;
-        self.keep_shell();
+        self.store_polytope();
         let depth = match depth {
-            Depth::Found(depth) => depth,
-            Depth::Known => return Some((Answer::Near(*candidate), gjk[1])),
+            DepthSearch::Found(depth) => depth,
+            DepthSearch::NotBelow => return Some((Answer::Near(*candidate), gjk[1])),
         };
         let separation = -depth.depth;
         let ids = depth.face[0].ids;
@@ -280,7 +280,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                 separation,
                 ids,
             };
-            return Some((Answer::Apart(axis), gjk[1]));
+            return Some((Answer::Separated(axis), gjk[1]));
         }
         if separation > 0.0 {
             return self.run_gjk(&depth.face, gjk);
@@ -289,9 +289,9 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     }
 
     /// Keeps the polytope that EPA expanded for the frames to come.
-    fn keep_shell(&mut self) {
-        if let Some((shells, key)) = &mut self.shells {
-            shells.keep(*key, self.cso, self.scratch);
+    fn store_polytope(&mut self) {
+        if let Some((cache, key)) = &mut self.polytope_cache {
+            cache.store(*key, self.cso, self.scratch);
         }
     }
 

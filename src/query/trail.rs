@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::feature::{self, Feature, Side, Verdict};
-use super::{Answer, Query, WARM, corner, walk};
-use crate::both::both;
+use super::feature::{self, FacetEdge, Feature, Verdict};
+use super::{Answer, Query, WARM, corner, walk as gauss_map};
+use crate::both::map_pair;
 use crate::stats::Stage;
 use crate::support::{Polytope, VertexId};
 
@@ -16,7 +16,7 @@ use crate::support::{Polytope, VertexId};
 const MAX_WALK: usize = 10;
 
 /// On the way from facet to facet.
-struct Trail {
+struct FacetWalk {
     /// The features that span the facet to look at.
     features: [Feature; 2],
     /// Where these span no plane, it tells where to look.
@@ -31,7 +31,7 @@ struct Trail {
 }
 
 /// The facet to look at next, if there is one, and the ends of where it was looked for.
-type Way = (Option<[Feature; 2]>, [[VertexId; 2]; 2]);
+type NextFacet = (Option<[Feature; 2]>, [[VertexId; 2]; 2]);
 
 type Found = Option<(Answer, Stage)>;
 
@@ -45,44 +45,50 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
 
     /// Answers by the facet of a contact that is remembered, if the `verdict` on it allows that, or goes
     /// on from there.
-    pub(crate) fn follow_contact(
+    pub(crate) fn start_from_features(
         &mut self,
         normal: DVec3,
         features: [Feature; 2],
         verdict: &Verdict,
     ) -> Found {
-        let mut trail = self.trail(normal, features, Stage::Feature, WARM);
-        match self.step(verdict, &mut trail) {
+        let mut walk = self.start_walk(normal, features, Stage::Feature, WARM);
+        match self.step(verdict, &mut walk) {
             ControlFlow::Break(found) => found,
-            ControlFlow::Continue(()) => self.walk(trail),
+            ControlFlow::Continue(()) => self.run_walk(walk),
         }
     }
 
     /// Walks from the facet that `features` span.
-    pub(super) fn follow(
+    pub(super) fn walk_from(
         &mut self,
         normal: DVec3,
         features: [Feature; 2],
         gjk: [Stage; 2],
     ) -> Found {
-        self.walk(self.trail(normal, features, Stage::Walk, gjk))
+        self.run_walk(self.start_walk(normal, features, Stage::FacetWalk, gjk))
     }
 
-    fn trail(&self, normal: DVec3, features: [Feature; 2], stage: Stage, gjk: [Stage; 2]) -> Trail {
-        Trail {
+    fn start_walk(
+        &self,
+        normal: DVec3,
+        features: [Feature; 2],
+        stage: Stage,
+        gjk: [Stage; 2],
+    ) -> FacetWalk {
+        FacetWalk {
             features,
             normal,
             crossed: None,
-            steps_left: if self.is_far_sighted() { 0 } else { MAX_WALK },
+            steps_left: if self.skips_facet_walk() { 0 } else { MAX_WALK },
             stage,
             gjk,
         }
     }
 
-    fn walk(&mut self, mut trail: Trail) -> Found {
+    fn run_walk(&mut self, mut walk: FacetWalk) -> Found {
         loop {
-            let verdict = self.certify(trail.features);
-            if let ControlFlow::Break(found) = self.step(&verdict, &mut trail) {
+            let verdict = self.certify(walk.features);
+            if let ControlFlow::Break(found) = self.step(&verdict, &mut walk) {
                 return found;
             }
         }
@@ -90,75 +96,85 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
 
     /// Answers by the facet at hand, or by GJK and EPA where the way ends; else goes to the next facet.
     #[inline(always)]
-    fn step(&mut self, verdict: &Verdict, trail: &mut Trail) -> ControlFlow<Found> {
+    fn step(&mut self, verdict: &Verdict, walk: &mut FacetWalk) -> ControlFlow<Found> {
         let (next, ends) = match verdict {
-            Verdict::Apart(apart) => {
-                return ControlFlow::Break(Some((Answer::Apart(*apart), trail.stage)));
+            Verdict::Separated(apart) => {
+                return ControlFlow::Break(Some((Answer::Separated(*apart), walk.stage)));
             }
             Verdict::Certified(proximity) => {
-                return ControlFlow::Break(Some((Answer::Near(*proximity), trail.stage)));
+                return ControlFlow::Break(Some((Answer::Near(*proximity), walk.stage)));
             }
-            Verdict::Unproved(candidate) => {
-                return ControlFlow::Break(self.find_depth(candidate, trail.stage, trail.gjk));
+            Verdict::Undecided(candidate) => {
+                return ControlFlow::Break(self.find_depth(candidate, walk.stage, walk.gjk));
             }
-            Verdict::Beyond(side) => self.cross(side, trail),
-            Verdict::Cut(vertex, normal) => {
-                (walk::around(self.cso, vertex, *normal), [vertex.ids; 2])
-            }
-            Verdict::NoPlane => {
+            Verdict::OutsideEdge(side) => self.cross_edge(side, walk),
+            Verdict::NotSupporting(vertex, normal) => (
+                gauss_map::facet_at_vertex(self.cso, vertex, *normal),
+                [vertex.ids; 2],
+            ),
+            Verdict::Degenerate => {
                 let (max, tolerance) = (self.max_distance, self.tolerance());
-                let at_corner =
-                    corner::certify(self.cso, trail.features, max, tolerance, self.cost);
+                let at_corner = corner::certify(self.cso, walk.features, max, tolerance, self.cost);
                 if let Some(answer) = at_corner {
-                    return ControlFlow::Break(Some((answer, trail.stage)));
+                    return ControlFlow::Break(Some((answer, walk.stage)));
                 }
-                self.start_anew(trail.normal, feature::vertices(self.cso, trail.features))
+                self.restart_at(walk.normal, feature::vertices(self.cso, walk.features))
             }
         };
         match next {
-            Some(next) if trail.steps_left > 0 => trail.features = next,
+            Some(next) if walk.steps_left > 0 => walk.features = next,
             _ => {
-                let ends = both(ends, |ids| self.cso.vertex(ids));
+                let ends = map_pair(ends, |ids| self.cso.vertex(ids));
                 let distinct = if ends[0].ids == ends[1].ids { 1 } else { 2 };
-                return ControlFlow::Break(self.run_gjk(&ends[..distinct], trail.gjk));
+                return ControlFlow::Break(self.run_gjk(&ends[..distinct], walk.gjk));
             }
         }
-        trail.steps_left -= 1;
-        trail.stage = Stage::Walk;
+        walk.steps_left -= 1;
+        walk.stage = Stage::FacetWalk;
         ControlFlow::Continue(())
     }
 
     /// Over a side, unless that leads back.
     #[inline(always)]
-    fn cross(&mut self, side: &Side, trail: &mut Trail) -> Way {
+    fn cross_edge(&mut self, side: &FacetEdge, walk: &mut FacetWalk) -> NextFacet {
         let [from, to] = side.ends;
         // A facet that has its face of shape 2 goes around the other way.
-        let back = trail.crossed == Some([to, from]) || trail.crossed == Some([from, to]);
-        trail.crossed = Some(side.ends);
-        let across = (!back).then(|| walk::across(self.cso, side)).flatten();
+        let back = walk.crossed == Some([to, from]) || walk.crossed == Some([from, to]);
+        walk.crossed = Some(side.ends);
+        let across = (!back)
+            .then(|| gauss_map::adjacent_facet(self.cso, side))
+            .flatten();
         match across {
-            Some(next) if next != trail.features => (Some(next), side.ends),
-            _ => self.leave(trail.features, side, trail.normal),
+            Some(next) if next != walk.features => (Some(next), side.ends),
+            _ => self.leave_facet(walk.features, side, walk.normal),
         }
     }
 
     /// Where the way over a side leads back. Two edges may span no facet at these poses, and any plane
     /// then: they are left by the vertex that is extreme along `normal`. Else the nearest point lies on the
     /// side.
-    fn leave(&mut self, features: [Feature; 2], side: &Side, normal: DVec3) -> Way {
+    fn leave_facet(
+        &mut self,
+        features: [Feature; 2],
+        side: &FacetEdge,
+        normal: DVec3,
+    ) -> NextFacet {
         if let [Feature::Edge(_), Feature::Edge(_)] = features {
             let [from, _] = side.ends;
             let vertex = self.cso.support(side.normal, from, self.cost);
             if side.normal.dot(vertex.w - self.cso.vertex(from).w) > self.tolerance() {
-                return self.start_anew(normal, vertex.ids);
+                return self.restart_at(normal, vertex.ids);
             }
         }
         (None, side.ends)
     }
 
     /// To a facet at the vertex that is extreme along `normal`.
-    fn start_anew(&mut self, normal: DVec3, start: [VertexId; 2]) -> Way {
+    fn restart_at(&mut self, normal: DVec3, start: [VertexId; 2]) -> NextFacet {
         let vertex = self.cso.support(normal, start, self.cost);
-        (walk::around(self.cso, &vertex, normal), [vertex.ids; 2])
+        (
+            gauss_map::facet_at_vertex(self.cso, &vertex, normal),
+            [vertex.ids; 2],
+        )
     }
 }

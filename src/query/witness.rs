@@ -32,7 +32,7 @@ pub(super) fn of_depth<A: Polytope, B: Polytope>(
         let features = feature::of_simplex(cso, depth.face.iter(), depth.normal);
         proximity([depth.on_1, depth.on_2], features)
     };
-    let radius = cso.smaller_radius();
+    let radius = cso.min_radius();
     let beside = depth.on_1 - depth.on_2 - through;
     if beside.length() <= DEPTH_GAP * radius {
         return at_hand();
@@ -45,7 +45,7 @@ pub(super) fn of_depth<A: Polytope, B: Polytope>(
     };
     let start = depth.face.map(|vertex| apart.vertex(vertex.ids));
     match gjk::distance::<Preferred, _, _>(&apart, &start, f64::INFINITY, cost) {
-        Outcome::Near(closest) => {
+        Outcome::Disjoint(closest) => {
             let simplex = closest.simplex.vertices();
             let features = feature::of_simplex(cso, simplex, depth.normal);
             proximity([closest.on_1, closest.on_2 - way], features)

@@ -20,9 +20,9 @@ pub fn prepared(plain: &SharedShape) -> SharedShape {
 }
 
 /// A seeded source of geometry.
-pub struct Dice(Rand64);
+pub struct Rng(Rand64);
 
-impl Dice {
+impl Rng {
     pub fn new(seed: u128) -> Self {
         Self(Rand64::new(seed))
     }
@@ -83,7 +83,7 @@ impl Dice {
 
     /// A smooth relative motion of `frames` frames that starts apart, passes through touching
     /// and deep contact, and ends apart, for two shapes whose centres touch at about `reach`.
-    pub fn passage(&mut self, frames: usize, reach: f64) -> Vec<ExactPose> {
+    pub fn trajectory(&mut self, frames: usize, reach: f64) -> Vec<ExactPose> {
         let along = self.direction();
         let aside = along.any_orthonormal_vector() * self.range(0.0, 0.3) * reach;
         let (first, turn) = (self.rotation(), self.direction());

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use glam::{DQuat, DVec3, Vec3};
 
 use crate::cases::Hull;
-use crate::generate::{Dice, hull_of};
+use crate::generate::{Rng, hull_of};
 
 const WEDGE: [[i8; 3]; 6] = [
     [-1, 0, 0],
@@ -28,7 +28,7 @@ const BOX: [[i8; 3]; 8] = [
     [1, 1, 1],
 ];
 
-impl Dice {
+impl Rng {
     /// A wedge, blade, needle, tetrahedron, box, prism or round hull of about this size, perhaps very
     /// thin.
     pub fn any_hull(&mut self, size: f64) -> Hull {

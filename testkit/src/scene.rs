@@ -6,7 +6,7 @@ use parry3d::query::{QueryDispatcher, TrackedContact};
 use parry3d::shape::SharedShape;
 
 use super::cases::Hull;
-use super::generate::Dice;
+use super::generate::Rng;
 use super::memory::{Manifold, Memory, cold_manifold};
 use super::oracle::{Solid, regret, signed_distance};
 use super::pose::ExactPose;
@@ -180,7 +180,7 @@ impl<'a> Scene<'a> {
 }
 
 /// A pose near touching more often than not: the middle of a random approach.
-pub fn random_scene<'a>(dice: &mut Dice, a: &'a Hull, b: &'a Hull, reach: f64) -> Scene<'a> {
-    let frame = dice.count(0, 15);
-    Scene::new(a, b, dice.passage(32, reach)[frame])
+pub fn random_scene<'a>(rng: &mut Rng, a: &'a Hull, b: &'a Hull, reach: f64) -> Scene<'a> {
+    let frame = rng.count(0, 15);
+    Scene::new(a, b, rng.trajectory(32, reach)[frame])
 }

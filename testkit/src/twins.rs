@@ -15,7 +15,7 @@ pub fn hull_shape(shape: &SharedShape) -> &HullShape {
 
 /// Calls `check` with the name of each published hull, the hull and its twin.
 pub fn with_twins(mut check: impl FnMut(&str, &Hull, &SharedShape)) {
-    // In the order of their names, so that every run throws the same dice for each.
+    // In the order of their names, so that every run throws the same rng for each.
     let hulls: BTreeMap<_, _> = hulls().iter().collect();
     for (name, hull) in hulls {
         check(name, hull, &prepared(&hull.shape));

@@ -4,7 +4,7 @@ use isa_gjk::IsaGjkDispatcher;
 use parry3d::utils::Array2;
 use rapier3d::prelude::*;
 
-use super::generate::{Dice, prepared};
+use super::generate::{Rng, prepared};
 
 /// What the bodies fall on.
 #[derive(Clone, Copy, Debug)]
@@ -51,8 +51,8 @@ impl Ground {
 }
 
 /// Plain hulls, compounds of hulls, prepared hulls, rounded hulls, and shapes without any.
-pub fn shapes(dice: &mut Dice) -> Vec<SharedShape> {
-    let [small, medium, large] = [8, 24, 80].map(|corners| dice.hull(corners, 0.8).shape);
+pub fn shapes(rng: &mut Rng) -> Vec<SharedShape> {
+    let [small, medium, large] = [8, 24, 80].map(|corners| rng.hull(corners, 0.8).shape);
     let polyhedron = medium.as_convex_polyhedron().expect("a hull");
     let aside = |x: Real| Pose::translation(x, 0.0, 0.1 * x);
     let ends = vec![(aside(-0.3), small.clone()), (aside(0.3), large.clone())];
@@ -80,8 +80,8 @@ pub fn mixed(ground: Ground, count: usize, narrow_phase: NarrowPhase) -> Physics
         let wall = ColliderBuilder::cuboid(half.x, half.y, half.z);
         world.insert_collider(wall.translation(Vector::new(3.0 * x, 4.0, 3.0 * z)), None);
     }
-    let mut dice = Dice::new(61);
-    let mut shapes = shapes(&mut dice);
+    let mut rng = Rng::new(61);
+    let mut shapes = shapes(&mut rng);
     if matches!(ground, Ground::Voxels) {
         // With rapier's own dispatcher a ball on voxels fails an assertion in the solver graph: the
         // pair has many manifolds, but no workspace by which rapier could tell.
@@ -89,20 +89,20 @@ pub fn mixed(ground: Ground, count: usize, narrow_phase: NarrowPhase) -> Physics
     }
     for i in 0..count {
         let shape = shapes[i % shapes.len()].clone();
-        let body = RigidBodyBuilder::dynamic().pose(start(i, &mut dice));
+        let body = RigidBodyBuilder::dynamic().pose(start(i, &mut rng));
         world.insert(body, ColliderBuilder::new(shape));
     }
     world
 }
 
 /// Places in layers of nine, turned at random.
-pub fn start(i: usize, dice: &mut Dice) -> Pose {
+pub fn start(i: usize, rng: &mut Rng) -> Pose {
     let cell = Vector::new(
         (i % 3) as Real - 1.0,
         0.8 + (i / 9) as Real,
         (i / 3 % 3) as Real - 1.0,
     );
-    Pose::new(cell * 1.2, dice.direction().as_vec3())
+    Pose::new(cell * 1.2, rng.direction().as_vec3())
 }
 
 /// A narrow phase that asks us.

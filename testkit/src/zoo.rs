@@ -4,18 +4,18 @@ use parry3d::math::{IVector, Pose, Real, Rotation, Vector};
 use parry3d::shape::SharedShape;
 use parry3d::utils::Array2;
 
-use super::generate::{Dice, hull_of, prepared};
+use super::generate::{Rng, hull_of, prepared};
 
 /// A shape about one unit across.
-pub struct Exhibit {
+pub struct ShapeSample {
     pub name: &'static str,
     pub has_hull: bool,
     pub shape: SharedShape,
 }
 
 /// One of every type of shape, and hulls wherever a hull can be.
-pub fn zoo() -> Vec<Exhibit> {
-    let [hull, other_hull] = [20, 40].map(|corners| Dice::new(11).hull(corners, 1.2).shape);
+pub fn shape_samples() -> Vec<ShapeSample> {
+    let [hull, other_hull] = [20, 40].map(|corners| Rng::new(11).hull(corners, 1.2).shape);
     let hull_points: Vec<Vector> = hull
         .as_convex_polyhedron()
         .expect("a convex polyhedron")
@@ -69,8 +69,8 @@ pub fn zoo() -> Vec<Exhibit> {
         ("voxels", voxels()),
         ("polyline", SharedShape::polyline(vec![a, b, c], None)),
     ];
-    let exhibits = |has_hull: bool| {
-        move |(name, shape)| Exhibit {
+    let samples = |has_hull: bool| {
+        move |(name, shape)| ShapeSample {
             name,
             has_hull,
             shape,
@@ -78,8 +78,8 @@ pub fn zoo() -> Vec<Exhibit> {
     };
     with_hull
         .into_iter()
-        .map(exhibits(true))
-        .chain(without_hull.into_iter().map(exhibits(false)))
+        .map(samples(true))
+        .chain(without_hull.into_iter().map(samples(false)))
         .collect()
 }
 

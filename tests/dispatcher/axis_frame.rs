@@ -4,7 +4,7 @@ use isa_gjk::{IsaGjkDispatcher, Stage};
 use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Shape, SharedShape};
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 
 const FRAMES: u64 = 60;
 
@@ -23,7 +23,11 @@ fn answers_by_axis(shapes: [&dyn Shape; 2], pose: impl Fn(Real) -> Pose) -> u64 
         );
     }
     let stats = dispatcher.stats();
-    assert_eq!(stats.answered[Stage::Balls as usize], 0, "the wall is long");
+    assert_eq!(
+        stats.answered[Stage::BoundingSpheres as usize],
+        0,
+        "the wall is long"
+    );
     stats.answered[Stage::Axis as usize]
 }
 
@@ -31,8 +35,8 @@ fn answers_by_axis(shapes: [&dyn Shape; 2], pose: impl Fn(Real) -> Pose) -> u64 
 /// long wall reaches far.
 #[test]
 fn a_hull_that_tumbles_along_a_wall_is_apart_by_its_axis() {
-    let mut dice = Dice::new(5);
-    let hull = dice.hull(40, 0.5).shape;
+    let mut rng = Rng::new(5);
+    let hull = rng.hull(40, 0.5).shape;
     let wall = SharedShape::cuboid(20.0, 20.0, 0.5);
     let of_hull = |frame: Real| {
         let along = Vector::new(0.05 * frame - 1.5, 2.0, 1.2);

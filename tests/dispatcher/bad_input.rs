@@ -14,7 +14,7 @@ use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::query::{ClosestPoints, Contact, QueryDispatcher};
 use parry3d::shape::SharedShape;
 use testkit::cases::Hull;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 use testkit::memory::{Manifold, Memory, cold_manifold};
 use testkit::oracle::{Solid, regret, signed_distance};
 use testkit::pose::ExactPose;
@@ -87,8 +87,8 @@ impl Answers {
 
 /// A small, a medium and a large hull.
 fn hulls() -> [Hull; 3] {
-    let mut dice = Dice::new(21);
-    [4, 30, 200].map(|corners| dice.hull(corners, 1.0))
+    let mut rng = Rng::new(21);
+    [4, 30, 200].map(|corners| rng.hull(corners, 1.0))
 }
 
 /// Measures all answers about a pair in units of the `tolerance`.
@@ -295,15 +295,15 @@ fn scaled(hull: &Hull, scale: Real) -> Hull {
 fn sizes_may_be_a_million_apart() {
     const ROUNDING: f64 = 1.0e3 * 1.0e-6;
     let mut report = Report::new("sizes a million apart");
-    let mut dice = Dice::new(22);
+    let mut rng = Rng::new(22);
     for turn in 0..40 {
-        let rock = scaled(&dice.hull(60, 1.0), 1.0e3);
-        let pebble = scaled(&dice.hull(30, 1.0), 1.0e-3);
-        let up = dice.direction();
+        let rock = scaled(&rng.hull(60, 1.0), 1.0e3);
+        let pebble = scaled(&rng.hull(30, 1.0), 1.0e-3);
+        let up = rng.direction();
         let ground = rock.solid.support(up);
         for height in [-0.5, -1.0e-3, 0.0, 1.0e-3, 0.5, 100.0] {
             let pose = ExactPose {
-                rotation: dice.rotation(),
+                rotation: rng.rotation(),
                 translation: up * (ground + height),
             }
             .rounded();
@@ -321,15 +321,12 @@ fn sizes_may_be_a_million_apart() {
 fn bodies_may_be_ten_kilometres_from_the_origin() {
     const ROUNDING: f64 = 1.0e-5;
     let mut report = Report::new("ten kilometres from the origin");
-    let mut dice = Dice::new(23);
+    let mut rng = Rng::new(23);
     for turn in 0..100 {
-        let [a, b] = [20, 80].map(|corners| dice.hull(corners, 1.0));
-        let place1 = Pose::from_parts(
-            dice.direction().as_vec3() * 1.0e4,
-            dice.rotation().as_quat(),
-        );
-        let offset = (dice.direction() * dice.range(0.0, 1.5)).as_vec3();
-        let place2 = Pose::from_parts(place1.translation + offset, dice.rotation().as_quat());
+        let [a, b] = [20, 80].map(|corners| rng.hull(corners, 1.0));
+        let place1 = Pose::from_parts(rng.direction().as_vec3() * 1.0e4, rng.rotation().as_quat());
+        let offset = (rng.direction() * rng.range(0.0, 1.5)).as_vec3();
+        let place2 = Pose::from_parts(place1.translation + offset, rng.rotation().as_quat());
         let pose12 = place1.inv_mul(&place2);
         let pose = ExactPose {
             rotation: pose12.rotation.as_dquat(),
@@ -347,22 +344,22 @@ fn bodies_may_be_ten_kilometres_from_the_origin() {
 fn relative_translations_may_be_large() {
     const ROUNDING: f64 = 1.0e4 * 1.0e-6;
     let mut report = Report::new("large relative translations");
-    let mut dice = Dice::new(24);
+    let mut rng = Rng::new(24);
     for turn in 0..40 {
-        let [a, b] = [20, 80].map(|corners| dice.hull(corners, 1.0));
+        let [a, b] = [20, 80].map(|corners| rng.hull(corners, 1.0));
         let apart = ExactPose {
-            rotation: dice.rotation(),
-            translation: dice.direction() * 1.0e4,
+            rotation: rng.rotation(),
+            translation: rng.direction() * 1.0e4,
         };
         let finding = judge(&a, &b, apart.rounded(), ROUNDING);
         report.add("apart", &format!("turn {turn}"), finding);
 
-        let shift = dice.direction() * 1.0e4;
+        let shift = rng.direction() * 1.0e4;
         let far = moved(&b, shift);
-        let turned = dice.rotation();
+        let turned = rng.rotation();
         let back = ExactPose {
             rotation: turned,
-            translation: dice.direction() * dice.range(0.0, 1.5) - turned * shift,
+            translation: rng.direction() * rng.range(0.0, 1.5) - turned * shift,
         };
         let finding = judge(&a, &far, back.rounded(), ROUNDING);
         report.add("far from its origin", &format!("turn {turn}"), finding);
@@ -388,10 +385,10 @@ fn moved(hull: &Hull, shift: DVec3) -> Hull {
 #[test]
 fn tetrahedra_are_answered_exactly() {
     let mut report = Report::new("tetrahedra");
-    let mut dice = Dice::new(25);
+    let mut rng = Rng::new(25);
     for turn in 0..300 {
-        let [a, b] = [(); 2].map(|()| dice.hull(4, 1.0));
-        let finding = judge(&a, &b, dice.pose(1.2), 1.0e-5);
+        let [a, b] = [(); 2].map(|()| rng.hull(4, 1.0));
+        let finding = judge(&a, &b, rng.pose(1.2), 1.0e-5);
         report.add("pair", &format!("turn {turn}"), finding);
     }
     report.conclude();
@@ -401,13 +398,13 @@ fn tetrahedra_are_answered_exactly() {
 #[test]
 fn almost_flat_tetrahedra_are_answered_exactly() {
     let mut report = Report::new("almost flat tetrahedra");
-    let mut dice = Dice::new(26);
+    let mut rng = Rng::new(26);
     for thickness in [1.0e-3, 1.0e-5, 1.0e-6] {
         let flat = tetrahedron(thickness);
-        let other = dice.hull(30, 1.0);
+        let other = rng.hull(30, 1.0);
         for turn in 0..50 {
             for [a, b] in [[&flat, &other], [&other, &flat], [&flat, &flat]] {
-                let finding = judge(a, b, dice.pose(1.0), 2.0e-5);
+                let finding = judge(a, b, rng.pose(1.0), 2.0e-5);
                 let route = format!("thickness {thickness}");
                 report.add(&route, &format!("turn {turn}"), finding);
             }

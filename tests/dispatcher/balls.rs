@@ -4,7 +4,7 @@
 use isa_gjk::{IsaGjkDispatcher, Stage};
 use parry3d::math::{Pose, Rotation, Vector};
 use parry3d::shape::SharedShape;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 use testkit::memory::{Manifold, Memory, cold_manifold};
 
 const PREDICTION: f32 = 0.01;
@@ -16,15 +16,15 @@ fn depth(manifold: &Manifold) -> Option<f32> {
 /// Hulls over a plane, from below it to high above, in either order.
 #[test]
 fn what_is_high_above_the_ground_is_known_by_its_ball() {
-    let mut dice = Dice::new(81);
+    let mut rng = Rng::new(81);
     let ground = SharedShape::halfspace(Vector::Y);
     let dispatcher = IsaGjkDispatcher::default();
     let (mut high, mut low) = (0, 0);
     for vertices in [4, 8, 40, 200] {
-        let hull = dice.hull(vertices, 0.5).shape;
+        let hull = rng.hull(vertices, 0.5).shape;
         for step in 0..100 {
             let height = 0.03 * step as f32 - 0.5;
-            let turn = Rotation::from_scaled_axis(dice.direction().as_vec3());
+            let turn = Rotation::from_scaled_axis(rng.direction().as_vec3());
             let pose = Pose::from_parts(Vector::new(3.0, height, -2.0), turn);
             let polyhedron = hull.as_convex_polyhedron().expect("a plain hull");
             let heights = polyhedron.points().iter().map(|&p| (pose * p).y);
@@ -33,7 +33,7 @@ fn what_is_high_above_the_ground_is_known_by_its_ball() {
                 let before = dispatcher.stats();
                 let manifold = cold_manifold(&dispatcher, &pose, shapes, PREDICTION);
                 let stats = dispatcher.stats().since(&before);
-                if stats.answered[Stage::Balls as usize] == 1 {
+                if stats.answered[Stage::BoundingSpheres as usize] == 1 {
                     assert_eq!(stats.supports, 0);
                     assert!(lowest > PREDICTION, "{lowest} above the ground");
                     high += 1;
@@ -56,16 +56,16 @@ fn what_is_high_above_the_ground_is_known_by_its_ball() {
 /// of a pair that is new.
 #[test]
 fn a_pair_that_comes_back_has_the_contacts_of_a_new_one() {
-    let mut dice = Dice::new(82);
+    let mut rng = Rng::new(82);
     let dispatcher = IsaGjkDispatcher::default();
     let mut met = 0;
     for _ in 0..60 {
-        let shapes = [24, 120].map(|vertices| dice.hull(vertices, 1.0).shape);
+        let shapes = [24, 120].map(|vertices| rng.hull(vertices, 1.0).shape);
         let shapes = shapes.each_ref();
         let mut memory = Memory::default();
         for _ in 0..4 {
-            let direction = dice.direction().as_vec3();
-            let turn = Rotation::from_scaled_axis(dice.direction().as_vec3());
+            let direction = rng.direction().as_vec3();
+            let turn = Rotation::from_scaled_axis(rng.direction().as_vec3());
             for distance in [3.0, 0.6, 0.5, 3.0] {
                 let pose = Pose::from_parts(direction * distance, turn);
                 let new = cold_manifold(&dispatcher, &pose, shapes, PREDICTION);

@@ -7,7 +7,7 @@ use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Vector};
 use parry3d::shape::{ConvexPolyhedron, SharedShape};
 use testkit::cases::Hull;
-use testkit::generate::{Dice, hull_of};
+use testkit::generate::{Rng, hull_of};
 use testkit::memory::{Memory, cold_manifold};
 use testkit::report::Report;
 use testkit::scene::random_scene;
@@ -23,14 +23,14 @@ fn replaced_shapes_are_answered_as_they_are() {
 
 fn check_replaced_shapes(corners: usize) {
     let mut report = Report::new(format!("replaced shapes of {corners} corners"));
-    let mut dice = Dice::new(6);
+    let mut rng = Rng::new(6);
     let dispatcher = IsaGjkDispatcher::default();
     let mut memory = Memory::default();
     let mut addresses = Vec::new();
     for turn in 0..200 {
-        let [a, b] = [(); 2].map(|()| dice.hull(corners, 1.0));
+        let [a, b] = [(); 2].map(|()| rng.hull(corners, 1.0));
         addresses.push(std::ptr::from_ref(&*a.shape).addr());
-        let scene = random_scene(&mut dice, &a, &b, 0.9);
+        let scene = random_scene(&mut rng, &a, &b, 0.9);
         let id = format!("turn {turn}");
         let manifold = scene.update(&dispatcher, &mut memory);
         report.add("manifold", &id, scene.judge(manifold));
@@ -94,13 +94,13 @@ fn shapes_mutated_in_place_are_answered_as_they_are() {
 
 fn check_shapes_mutated_in_place(corners: usize) {
     let mut report = Report::new(format!("shapes of {corners} corners mutated in place"));
-    let mut dice = Dice::new(7);
+    let mut rng = Rng::new(7);
     let dispatcher = IsaGjkDispatcher::default();
     let mut memory = Memory::default();
-    let [mut a, b] = [(); 2].map(|()| dice.hull(corners, 1.0));
+    let [mut a, b] = [(); 2].map(|()| rng.hull(corners, 1.0));
     for turn in 0..150 {
         let route = if turn % 3 == 0 {
-            replace_in_place(&mut a, dice.hull(corners, 1.0));
+            replace_in_place(&mut a, rng.hull(corners, 1.0));
             "replaced"
         } else {
             let scale = Vector::splat(if turn % 3 == 1 { 1.5 } else { 0.5 });
@@ -108,7 +108,7 @@ fn check_shapes_mutated_in_place(corners: usize) {
             "scaled"
         };
         let reach = 0.5 * (a.solid.diameter() + b.solid.diameter());
-        let scene = random_scene(&mut dice, &a, &b, reach);
+        let scene = random_scene(&mut rng, &a, &b, reach);
         let id = format!("turn {turn}");
         let manifold = scene.update(&dispatcher, &mut memory);
         report.add(&format!("{route}, manifold"), &id, scene.judge(manifold));
@@ -140,7 +140,7 @@ fn pyramid(mut points: Vec<Vector>, other_diagonal: bool) -> SharedShape {
 #[test]
 fn the_same_points_with_other_edges_are_another_shape() {
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(8);
+    let mut rng = Rng::new(8);
     let cuboid = SharedShape::cuboid(0.7, 0.2, 0.7);
     let mut shape = pyramid(Vec::with_capacity(5), false);
     let (mut came_again, mut in_contact) = (0, 0);
@@ -156,7 +156,7 @@ fn the_same_points_with_other_edges_are_another_shape() {
         let points = lists.swap_remove(again.unwrap_or(0));
         shape = pyramid(points, turn % 2 == 0);
         came_again += usize::from(address(&shape) == before);
-        let mut small = || dice.range(-0.1, 0.1) as f32;
+        let mut small = || rng.range(-0.1, 0.1) as f32;
         let turned = Vector::new(small(), 0.3 + small(), small());
         let pose = Pose::new(Vector::new(small(), -0.19 + 0.1 * small(), small()), turned);
         let manifold = || {

@@ -10,7 +10,7 @@ use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact};
 use parry3d::shape::{PackedFeatureId, SharedShape};
 use testkit::cases::{Hull, hulls, trajectories};
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 use testkit::memory::{Manifold, Memory};
 use testkit::report::Report;
 use testkit::scene::{Scene, random_scene};
@@ -40,15 +40,15 @@ fn follow<'a>(report: &mut Report, name: &str, scenes: impl Iterator<Item = (Str
 }
 
 /// Two hulls of 8 to 300 corners, and about how far apart their centres are when they touch.
-fn random_pair(dice: &mut Dice) -> (Hull, Hull, f64) {
+fn random_pair(rng: &mut Rng) -> (Hull, Hull, f64) {
     let [a, b] = [(); 2].map(|()| {
-        let corners = if dice.range(0.0, 1.0) < 0.2 {
-            dice.count(100, 300)
+        let corners = if rng.range(0.0, 1.0) < 0.2 {
+            rng.count(100, 300)
         } else {
-            dice.count(8, 100)
+            rng.count(8, 100)
         };
-        let size = dice.range(0.5, 1.5);
-        dice.hull(corners, size)
+        let size = rng.range(0.5, 1.5);
+        rng.hull(corners, size)
     });
     let reach = 0.5 * (a.solid.diameter() + b.solid.diameter());
     (a, b, reach)
@@ -77,10 +77,10 @@ fn published_trajectories_are_answered_warm_as_cold() {
 #[test]
 fn smooth_motions_are_answered_warm_as_cold() {
     let mut report = Report::new("smooth random motions");
-    let mut dice = Dice::new(1);
+    let mut rng = Rng::new(1);
     for motion in 0..100 {
-        let (a, b, reach) = random_pair(&mut dice);
-        let poses = dice.passage(60, reach);
+        let (a, b, reach) = random_pair(&mut rng);
+        let poses = rng.trajectory(60, reach);
         let scenes = poses.into_iter().enumerate().map(|(frame, pose)| {
             let id = format!("motion {motion} frame {frame}");
             (id, Scene::new(&a, &b, pose))
@@ -93,12 +93,12 @@ fn smooth_motions_are_answered_warm_as_cold() {
 #[test]
 fn a_teleport_is_answered_as_if_nothing_were_remembered() {
     let mut report = Report::new("teleports");
-    let mut dice = Dice::new(2);
+    let mut rng = Rng::new(2);
     for motion in 0..100 {
-        let (a, b, reach) = random_pair(&mut dice);
-        let mut poses = dice.passage(40, reach);
+        let (a, b, reach) = random_pair(&mut rng);
+        let mut poses = rng.trajectory(40, reach);
         for frame in (7..40).step_by(4) {
-            poses[frame] = dice.pose(1.2 * reach);
+            poses[frame] = rng.pose(1.2 * reach);
         }
         let scenes = poses.into_iter().enumerate().map(|(frame, pose)| {
             let id = format!("motion {motion} frame {frame}");
@@ -113,10 +113,10 @@ fn a_teleport_is_answered_as_if_nothing_were_remembered() {
 /// would have gone on, to the last bit.
 #[test]
 fn a_copy_goes_on_alike() {
-    let mut dice = Dice::new(8);
+    let mut rng = Rng::new(8);
     for _ in 0..20 {
-        let (a, b, reach) = random_pair(&mut dice);
-        let poses = dice.passage(60, reach);
+        let (a, b, reach) = random_pair(&mut rng);
+        let poses = rng.trajectory(60, reach);
         let shapes = [&a.shape, &b.shape];
         let dispatcher = IsaGjkDispatcher::default();
         let mut memory = Memory::default();
@@ -150,11 +150,11 @@ fn judge_with(report: &mut Report, route: &str, id: &str, scene: &Scene, mut mem
 #[test]
 fn manifolds_of_another_dispatcher_do_no_harm() {
     let mut report = Report::new("manifolds filled by parry");
-    let mut dice = Dice::new(3);
+    let mut rng = Rng::new(3);
     for pair in 0..100 {
-        let (a, b, reach) = random_pair(&mut dice);
-        let scene = random_scene(&mut dice, &a, &b, reach);
-        let earlier = random_scene(&mut dice, &a, &b, reach);
+        let (a, b, reach) = random_pair(&mut rng);
+        let scene = random_scene(&mut rng, &a, &b, reach);
+        let earlier = random_scene(&mut rng, &a, &b, reach);
         for (route, source) in [("same pose", &scene), ("another pose", &earlier)] {
             let mut memory = Memory::default();
             DefaultQueryDispatcher
@@ -176,15 +176,15 @@ fn manifolds_of_another_dispatcher_do_no_harm() {
 #[test]
 fn manifolds_of_larger_hulls_do_no_harm() {
     let mut report = Report::new("manifolds of other hulls");
-    let mut dice = Dice::new(4);
+    let mut rng = Rng::new(4);
     for pair in 0..100 {
-        let [large_a, large_b] = [(); 2].map(|()| dice.hull(300, 1.0));
+        let [large_a, large_b] = [(); 2].map(|()| rng.hull(300, 1.0));
         let [small_a, small_b] = [(); 2].map(|()| {
-            let corners = dice.count(4, 12);
-            dice.hull(corners, 1.0)
+            let corners = rng.count(4, 12);
+            rng.hull(corners, 1.0)
         });
-        let large = random_pose_scene(&mut dice, &large_a, &large_b);
-        let small = random_scene(&mut dice, &small_a, &small_b, 1.0);
+        let large = random_pose_scene(&mut rng, &large_a, &large_b);
+        let small = random_scene(&mut rng, &small_a, &small_b, 1.0);
         let mut memory = Memory::default();
         large.update(&IsaGjkDispatcher::default(), &mut memory);
         memory.workspace = None;
@@ -200,11 +200,11 @@ fn manifolds_of_larger_hulls_do_no_harm() {
 }
 
 /// A pose of hulls that only serve to fill a manifold: no oracle needed.
-fn random_pose_scene<'a>(dice: &mut Dice, a: &'a Hull, b: &'a Hull) -> Scene<'a> {
+fn random_pose_scene<'a>(rng: &mut Rng, a: &'a Hull, b: &'a Hull) -> Scene<'a> {
     Scene {
         solids: [&a.solid, &b.solid],
         shapes: [&a.shape, &b.shape],
-        pose: dice.pose(1.2),
+        pose: rng.pose(1.2),
         exact: f64::NAN,
         scale: 1.0,
     }
@@ -213,7 +213,7 @@ fn random_pose_scene<'a>(dice: &mut Dice, a: &'a Hull, b: &'a Hull) -> Scene<'a>
 #[test]
 fn manifolds_full_of_nonsense_do_no_harm() {
     let mut report = Report::new("nonsense in the manifold");
-    let mut dice = Dice::new(5);
+    let mut rng = Rng::new(5);
     let nonsense = [
         Vector::ZERO,
         Vector::NAN,
@@ -225,8 +225,8 @@ fn manifolds_full_of_nonsense_do_no_harm() {
         Vector::new(0.5, Real::NAN, 4.0e9),
     ];
     for pair in 0..12 {
-        let (a, b, reach) = random_pair(&mut dice);
-        let scene = random_scene(&mut dice, &a, &b, reach);
+        let (a, b, reach) = random_pair(&mut rng);
+        let scene = random_scene(&mut rng, &a, &b, reach);
         for n1 in nonsense {
             for n2 in nonsense {
                 for (route, points) in [("no points", 0), ("one point", 1), ("four points", 4)] {

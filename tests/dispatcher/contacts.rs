@@ -96,8 +96,8 @@ fn a_dented_side_is_one_face_with_its_true_distances() {
 #[test]
 fn the_rim_of_a_lens_touches_in_points_on_it() {
     let wall = SharedShape::cuboid(1.0, 3.0, 3.0);
-    let mut dice = Rand32::new(5);
-    let mut within = |most: Real| most * (2.0 * dice.rand_float() - 1.0);
+    let mut rng = Rand32::new(5);
+    let mut within = |most: Real| most * (2.0 * rng.rand_float() - 1.0);
     for corners in (8..68).cycle().take(2000) {
         let mut points: Vec<Vector> = (0..corners)
             .map(|i| {
@@ -184,12 +184,12 @@ fn a_side_of_many_cells_is_met_as_a_whole() {
 /// side was reduced to a single facet.
 #[test]
 fn a_noisy_side_is_met_as_a_whole_in_points_on_it() {
-    let mut dice = Rand32::new(3);
+    let mut rng = Rand32::new(3);
     for i in 0..400 {
         let (count, noise) = ([10, 30, 100][i % 3], [1e-5, 1e-4, 1e-3][i / 3 % 3]);
-        let points = noisy_box(count, noise, &mut dice);
+        let points = noisy_box(count, noise, &mut rng);
         let shape = SharedShape::new(HullShape::from_points(&points).expect("a box"));
-        let mut within = |most: Real| most * (2.0 * dice.rand_float() - 1.0);
+        let mut within = |most: Real| most * (2.0 * rng.rand_float() - 1.0);
         let tilt = Rotation::from_rotation_x(within(0.01));
         let turn = tilt * Rotation::from_rotation_y(within(3.0));
         // On the ground as a whole, and in part beyond its edge.

@@ -8,7 +8,7 @@ use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{ClosestPoints, DefaultQueryDispatcher, QueryDispatcher};
 use parry3d::shape::SharedShape;
 use testkit::cases::Hull;
-use testkit::generate::{Dice, prepared};
+use testkit::generate::{Rng, prepared};
 use testkit::memory::{Manifold, Memory};
 use testkit::pose::ExactPose;
 
@@ -70,8 +70,8 @@ impl Curved {
     }
 
     /// By how much a point is outside of it, beyond some plane that supports it.
-    fn outside(&self, point: DVec3, dice: &mut Dice) -> f64 {
-        let samples = (0..50).map(|_| dice.direction());
+    fn outside(&self, point: DVec3, rng: &mut Rng) -> f64 {
+        let samples = (0..50).map(|_| rng.direction());
         let excess = |n: DVec3| n.dot(point) - self.support(n);
         samples.map(excess).fold(f64::NEG_INFINITY, f64::max)
     }
@@ -99,15 +99,15 @@ fn each_way(
 #[test]
 fn distances_are_proved_by_their_own_normals() {
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(211);
+    let mut rng = Rng::new(211);
     let mut apart = 0;
     for curved in Curved::all() {
         let shape = curved.shape();
         for vertices in [8, 30, 200] {
-            let hull = dice.hull(vertices, 1.0);
+            let hull = rng.hull(vertices, 1.0);
             let scale = curved.diameter() + hull.solid.diameter();
             for _ in 0..20 {
-                let pose = dice.pose(3.0);
+                let pose = rng.pose(3.0);
                 each_way(&hull, &shape, &pose, &mut |[a, b], pos12, swapped| {
                     let points = dispatcher.closest_points(pos12, &**a, &**b, Real::MAX);
                     let distance = dispatcher
@@ -135,7 +135,7 @@ fn distances_are_proved_by_their_own_normals() {
                         .max((way.length() - f64::from(distance)).abs());
                     let off = off
                         .max(hull.solid.outside(on_hull))
-                        .max(curved.outside(on_curved, &mut Dice::new(1)));
+                        .max(curved.outside(on_curved, &mut Rng::new(1)));
                     assert!(
                         off < DISTANCE * scale,
                         "{curved:?}, {vertices} vertices: {off} off"
@@ -155,18 +155,18 @@ fn least(manifold: Option<&Manifold>) -> Real {
 /// Whatever is remembered: the deepest contact is as deep as the pair, and none is there without need.
 #[test]
 fn no_contact_is_lost_along_trajectories() {
-    let mut dice = Dice::new(212);
+    let mut rng = Rng::new(212);
     let dispatcher = IsaGjkDispatcher::default();
     let before = dispatcher.stats();
     let (mut near, mut worst) = (0, 0.0_f64);
     for curved in Curved::all() {
         let shape = curved.shape();
         for vertices in [10, 60, 300] {
-            let hull = dice.hull(vertices, 1.0);
+            let hull = rng.hull(vertices, 1.0);
             let size = curved.diameter().min(hull.solid.diameter());
             let prediction = (0.02 * size) as Real;
             let mut memories = [(); 4].map(|()| Memory::default());
-            for pose in dice.passage(60, 0.5 * (curved.diameter() + hull.solid.diameter())) {
+            for pose in rng.trajectory(60, 0.5 * (curved.diameter() + hull.solid.diameter())) {
                 let mut memories = memories.iter_mut();
                 each_way(&hull, &shape, &pose, &mut |shapes, pos12, _| {
                     let memory = memories.next().expect("four ways");
@@ -195,7 +195,8 @@ fn no_contact_is_lost_along_trajectories() {
     assert!(near > 2000, "{near} contacts");
     assert!(worst < DEPTH, "a contact is {worst} of the size too far");
     let stats = dispatcher.stats().since(&before);
-    let proved = stats.answered[Stage::Balls as usize] + stats.answered[Stage::Axis as usize];
+    let proved =
+        stats.answered[Stage::BoundingSpheres as usize] + stats.answered[Stage::Axis as usize];
     assert!(proved > 2000, "{proved} proved to be apart");
 }
 
@@ -203,15 +204,15 @@ fn no_contact_is_lost_along_trajectories() {
 #[test]
 fn casts_end_where_they_touch() {
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(213);
+    let mut rng = Rng::new(213);
     let mut hits = 0;
     for curved in Curved::all() {
         let shape = curved.shape();
-        let hull = dice.hull(60, 1.0);
+        let hull = rng.hull(60, 1.0);
         for _ in 0..30 {
-            let mut pose = dice.pose(1.0);
-            pose.translation = dice.direction() * 5.0;
-            let aim = dice.direction() * dice.range(0.0, 0.8) - pose.translation;
+            let mut pose = rng.pose(1.0);
+            pose.translation = rng.direction() * 5.0;
+            let aim = rng.direction() * rng.range(0.0, 0.8) - pose.translation;
             let pose = pose.rounded();
             each_way(&hull, &shape, &pose, &mut |[a, b], pos12, swapped| {
                 // Of the second shape, in the frame of the first.
@@ -266,11 +267,11 @@ fn scaled(hull: &Hull, curved: &Curved, scale: Real) -> [SharedShape; 2] {
 #[test]
 fn a_pair_of_any_size_is_answered_as_one_of_metres() {
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(213);
+    let mut rng = Rng::new(213);
     let mut near = 0;
     for curved in Curved::all() {
-        let hull = dice.hull(30, 1.0);
-        let poses = dice.passage(40, 0.5 * (curved.diameter() + hull.solid.diameter()));
+        let hull = rng.hull(30, 1.0);
+        let poses = rng.trajectory(40, 0.5 * (curved.diameter() + hull.solid.diameter()));
         let answers = |scale: Real| {
             let [a, b] = scaled(&hull, &curved, scale);
             let mut memory = Memory::default();

@@ -23,7 +23,7 @@ const DISTANCE_TOLERANCE: f64 = 1.0e-5;
 /// Regret of normals, relative to the size of the pair.
 const REGRET_TOLERANCE: f64 = 1.0e-4;
 /// Closer than this to touching, relative to the size of the pair, either sign is right.
-const TOUCHING: f64 = 1.0e-6;
+const MIN_DIRECTED_DISTANCE: f64 = 1.0e-6;
 
 /// A case with the shapes to query, which need not be the published polyhedra themselves.
 struct Pair<'a> {
@@ -100,7 +100,7 @@ impl<'a> Pair<'a> {
     }
 
     fn touching_limit(&self) -> f64 {
-        (TOUCHING + self.case.pose_slack()) * self.case.scale
+        (MIN_DIRECTED_DISTANCE + self.case.pose_slack()) * self.case.scale
     }
 
     /// Measures a claim against the exact answer.

@@ -295,11 +295,11 @@ fn random_inputs_hold() {
     let runs = number("FUZZ_RUNS", 20_000);
     let seed = number("FUZZ_SEED", 1);
     let keep = std::env::var_os("FUZZ_KEEP").is_some();
-    let mut dice = oorandom::Rand64::new(seed.into());
+    let mut rng = oorandom::Rand64::new(seed.into());
     let (mut pairs, mut seen, mut findings) = (0, BTreeSet::new(), Vec::new());
     for turn in 0..runs {
-        let length = dice.rand_range(40..400) as usize;
-        let input: Vec<u8> = (0..length).map(|_| dice.rand_u64() as u8).collect();
+        let length = rng.rand_range(40..400) as usize;
+        let input: Vec<u8> = (0..length).map(|_| rng.rand_u64() as u8).collect();
         let done = std::panic::catch_unwind(|| run(&input, false));
         let Ok(outcome) = done else {
             let path = std::env::temp_dir().join(format!("isa-gjk-{seed}-{turn}.bin"));

@@ -7,10 +7,10 @@ use parry3d::query::details::ShapeCastOptions;
 use parry3d::query::{DefaultQueryDispatcher, PersistentQueryDispatcher, QueryDispatcher};
 use parry3d::shape::{ShapeType, SharedShape, TypedShape};
 use testkit::cases::hulls;
-use testkit::generate::{Dice, prepared};
+use testkit::generate::{Rng, prepared};
 use testkit::memory::{Manifold, Memory};
 use testkit::twins::{assert_same, hull_shape, with_twins};
-use testkit::zoo::{poses, zoo};
+use testkit::zoo::{poses, shape_samples};
 
 /// Deepest point of all manifolds.
 fn deepest(manifolds: &[Manifold]) -> Option<Real> {
@@ -34,13 +34,13 @@ fn distance([a, b]: [&SharedShape; 2], pose: &Pose) -> Real {
 /// What the solver sees, whose bits are those of the plain hull where our kernels answer.
 #[test]
 fn contacts_with_every_shape_are_those_of_the_plain_hull() {
-    let zoo = zoo();
+    let samples = shape_samples();
     let [plain, ours] = ["hull", "hull shape"].map(|name| {
-        let exhibit = zoo.iter().find(|exhibit| exhibit.name == name);
-        &exhibit.expect("in the zoo").shape
+        let sample = samples.iter().find(|sample| sample.name == name);
+        &sample.expect("in the samples").shape
     });
     let (mut touching, mut identical) = (0, 0);
-    for other in zoo.iter().filter(|e| e.name != "hull shape") {
+    for other in samples.iter().filter(|e| e.name != "hull shape") {
         // In parry's own contacts, the point or the corners of a face may differ.
         let kernel = other.has_hull || ["cuboid", "triangle", "trimesh"].contains(&other.name);
         for pose in poses() {
@@ -79,13 +79,13 @@ fn contacts_with_every_shape_are_those_of_the_plain_hull() {
 
 #[test]
 fn scene_queries_between_hulls_are_those_of_plain_hulls() {
-    let mut dice = Dice::new(5);
+    let mut rng = Rng::new(5);
     let dispatcher = IsaGjkDispatcher::default();
     for _ in 0..20 {
-        let plain = [12, 40].map(|corners| dice.hull(corners, 1.0).shape);
+        let plain = [12, 40].map(|corners| rng.hull(corners, 1.0).shape);
         let ours = plain.each_ref().map(prepared);
         for _ in 0..20 {
-            let pose = dice.pose(1.5).to_f32();
+            let pose = rng.pose(1.5).to_f32();
             let [a, b] = [&plain, &ours].map(|[g1, g2]| {
                 let (g1, g2) = (&**g1, &**g2);
                 let query = "supported";

@@ -8,7 +8,7 @@ use parry3d::math::{Real, Vector};
 use parry3d::query::{Ray, RayIntersection};
 use parry3d::shape::{FeatureId, PolygonalFeature, SharedShape};
 use testkit::cases::hulls;
-use testkit::generate::{Dice, prepared};
+use testkit::generate::{Rng, prepared};
 use testkit::oracle::Solid;
 use testkit::report::{Finding, Report};
 use testkit::twins::{assert_same, hull_shape, with_twins};
@@ -17,15 +17,15 @@ use testkit::twins::{assert_same, hull_shape, with_twins};
 const ROUNDING: f64 = 2e-6;
 
 /// Some place in, at or outside of a hull.
-fn somewhere(dice: &mut Dice, solid: &Solid) -> Vector {
-    let reach = solid.diameter() * dice.range(0.0, 1.5);
-    let corner = solid.points[dice.count(0, solid.points.len() - 1)];
-    (corner * dice.range(0.0, 1.1) + dice.direction() * reach).as_vec3()
+fn somewhere(rng: &mut Rng, solid: &Solid) -> Vector {
+    let reach = solid.diameter() * rng.range(0.0, 1.5);
+    let corner = solid.points[rng.count(0, solid.points.len() - 1)];
+    (corner * rng.range(0.0, 1.1) + rng.direction() * reach).as_vec3()
 }
 
 #[test]
 fn bounds_are_those_of_the_plain_hull() {
-    let mut dice = Dice::new(1);
+    let mut rng = Rng::new(1);
     with_twins(|name, hull, ours| {
         let plain = &hull.shape;
         assert_eq!(ours.compute_local_aabb(), plain.compute_local_aabb());
@@ -34,7 +34,7 @@ fn bounds_are_those_of_the_plain_hull() {
         assert_same(&spheres[0], &spheres[1], name);
         let size = hull.solid.diameter();
         for _ in 0..100 {
-            let pose = dice.pose(5.0 * size).to_f32();
+            let pose = rng.pose(5.0 * size).to_f32();
             let [a, b] = [ours, plain].map(|s| s.compute_aabb(&pose));
             let error = (a.mins - b.mins).abs().max((a.maxs - b.maxs).abs());
             let limit = ROUNDING as Real * (pose.translation.length() + size as Real);
@@ -124,13 +124,13 @@ fn check_ray(solid: &Solid, ray: &Ray, hit: Option<RayIntersection>) -> Finding 
 
 #[test]
 fn rays_hit_the_solid_where_they_enter_it() {
-    let mut dice = Dice::new(2);
+    let mut rng = Rng::new(2);
     let mut report = Report::new("ray casts");
     let (mut hits, mut agreed) = (0, 0);
     with_twins(|name, hull, ours| {
         for _ in 0..200 {
-            let origin = somewhere(&mut dice, &hull.solid);
-            let target = somewhere(&mut dice, &hull.solid) * 0.7;
+            let origin = somewhere(&mut rng, &hull.solid);
+            let target = somewhere(&mut rng, &hull.solid) * 0.7;
             let ray = Ray::new(origin, (target - origin) * 0.5);
             let hit = ours.cast_local_ray_and_get_normal(&ray, 4.0, false);
             report.add("hollow", name, check_ray(&hull.solid, &ray, hit));
@@ -182,12 +182,12 @@ fn rays_that_are_none_hit_nothing() {
 
 #[test]
 fn points_project_to_the_nearest_point_of_the_solid() {
-    let mut dice = Dice::new(3);
+    let mut rng = Rng::new(3);
     let mut report = Report::new("point projections");
     with_twins(|name, hull, ours| {
         let solid = &hull.solid;
         for _ in 0..200 {
-            let point = somewhere(&mut dice, solid);
+            let point = somewhere(&mut rng, solid);
             let height = solid.outside(point.as_dvec3());
             let size = solid.diameter() + f64::from(point.length());
             let (projection, feature) = ours.project_local_point_and_get_feature(point);
@@ -229,7 +229,7 @@ fn features_have_normals_and_missing_ones_have_none() {
             let expected = Some(hull.face_normal(face).as_vec3());
             assert_eq!(normal(FeatureId::Face(face)), expected, "{name}");
             let [a, b] = [0, 1].map(|i| hull.face_vertex(face, i));
-            let edge = hull.edge_id(a, b).expect("corners are neighbours");
+            let edge = hull.edge_between(a, b).expect("corners are neighbours");
             let between = normal(FeatureId::Edge(edge)).expect("an edge has faces");
             assert!(
                 between.as_dvec3().dot(hull.face_normal(face)) > 0.0,
@@ -245,13 +245,13 @@ fn features_have_normals_and_missing_ones_have_none() {
 
 #[test]
 fn features_for_clipping_hold_the_extreme_corner_and_span_the_face() {
-    let mut dice = Dice::new(4);
+    let mut rng = Rng::new(4);
     with_twins(|name, hull, ours| {
         let size = hull.solid.diameter();
         let (map, border) = ours.as_polygonal_feature_map().expect("a polytope");
         assert_eq!(border, 0.0);
         for _ in 0..100 {
-            let dir = dice.direction().as_vec3();
+            let dir = rng.direction().as_vec3();
             let mut feature = PolygonalFeature::default();
             map.local_support_feature(dir, &mut feature);
             let corners = &feature.vertices[..feature.num_vertices];

@@ -8,7 +8,7 @@ use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{HeightField, HeightFieldFlags, SharedShape, TriMeshFlags};
 use parry3d::utils::Array2;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 use testkit::memory::{Manifold, Memory, cold_manifold};
 
 /// The share of the smaller radius that the two points of a contact may be apart across the normal.
@@ -39,10 +39,10 @@ fn grounds() -> [SharedShape; 3] {
 }
 
 /// Upright at the origin of the ground, moved and turned by up to `noise`.
-fn rocked(height: Real, noise: f64, dice: &mut Dice) -> Pose {
-    let small = |dice: &mut Dice| (dice.direction() * noise).as_vec3();
-    let turn = Rotation::from_scaled_axis(small(dice));
-    Pose::from_parts(Vector::Y * height + small(dice), turn)
+fn rocked(height: Real, noise: f64, rng: &mut Rng) -> Pose {
+    let small = |rng: &mut Rng| (rng.direction() * noise).as_vec3();
+    let turn = Rotation::from_scaled_axis(small(rng));
+    Pose::from_parts(Vector::Y * height + small(rng), turn)
 }
 
 fn places(manifold: &Manifold) -> Vec<[Vector; 2]> {
@@ -52,7 +52,7 @@ fn places(manifold: &Manifold) -> Vec<[Vector; 2]> {
 
 #[test]
 fn contacts_of_a_resting_body_keep_their_places() {
-    let mut dice = Dice::new(3);
+    let mut rng = Rng::new(3);
     for ground in grounds() {
         for sides in [3, 4, 8, 16, 64] {
             for radius in [0.01, 0.05, 1.0] {
@@ -68,7 +68,7 @@ fn contacts_of_a_resting_body_keep_their_places() {
                         0.0
                     };
                     let noise = 4e-6 * f64::from(radius);
-                    let pose = rocked(0.399 * radius + lift, noise, &mut dice);
+                    let pose = rocked(0.399 * radius + lift, noise, &mut rng);
                     let manifold = memory
                         .update(&dispatcher, &pose, [&ground, &shape], PREDICTION)
                         .expect("supported");
@@ -106,7 +106,7 @@ fn triangulated_grounds() -> [SharedShape; 4] {
 /// Triangles have the same hysteresis as other shapes, as long as their normals stay uncorrected.
 #[test]
 fn contacts_on_triangles_keep_their_places() {
-    let mut dice = Dice::new(5);
+    let mut rng = Rng::new(5);
     for (i, ground) in triangulated_grounds().into_iter().enumerate() {
         for sides in [3, 8, 64] {
             let shape = prism(sides, 0.05);
@@ -116,7 +116,7 @@ fn contacts_on_triangles_keep_their_places() {
             let mut first = None;
             for _ in 0..50 {
                 // Beside the inner edge.
-                let mut pose = rocked(0.399 * 0.05, 2e-7, &mut dice);
+                let mut pose = rocked(0.399 * 0.05, 2e-7, &mut rng);
                 pose.translation += Vector::new(3.0, 0.0, -2.0);
                 let shapes = [&ground, &shape].map(|shape| &**shape);
                 dispatcher
@@ -149,17 +149,17 @@ fn contacts_on_triangles_keep_their_places() {
 /// and the least is the true one.
 #[test]
 fn kept_contacts_never_show_an_overlap_that_is_not_there() {
-    let mut dice = Dice::new(4);
+    let mut rng = Rng::new(4);
     let dispatcher = IsaGjkDispatcher::default();
     for _ in 0..40 {
         let [a, b] = [(); 2].map(|()| {
-            let corners = dice.count(8, 40);
-            dice.hull(corners, 1.0)
+            let corners = rng.count(8, 40);
+            rng.hull(corners, 1.0)
         });
         // A ball around the shape may be larger than half of its diameter.
         let radius = 0.6 * a.solid.diameter().min(b.solid.diameter());
         let mut memory = Memory::default();
-        for pose in dice.passage(600, radius * 2.0) {
+        for pose in rng.trajectory(600, radius * 2.0) {
             let pose = pose.to_f32();
             let shapes = [&a.shape, &b.shape];
             let manifold = memory.update(&dispatcher, &pose, shapes, PREDICTION);

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::*;
-use testkit::generate::{Dice, hull_of};
+use testkit::generate::{Rng, hull_of};
 use testkit::memory::Memory;
 
 /// The shortest of some runs, which nothing else on the machine has disturbed.
@@ -81,13 +81,13 @@ fn many_parts_that_meet_others_are_found_in_linear_time() {
 #[test]
 fn the_manifold_of_each_pair_is_its_own() {
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(117);
+    let mut rng = Rng::new(117);
     let parts = balls(400, 20);
-    let hull = dice.hull(40, 3.0).shape;
+    let hull = rng.hull(40, 3.0).shape;
     let mut memory = Memory::default();
     let mut met = 0;
     for _ in 0..60 {
-        let [x, z] = [(); 2].map(|()| dice.range(0.0, 19.0) as Real);
+        let [x, z] = [(); 2].map(|()| rng.range(0.0, 19.0) as Real);
         let pose = Pose::translation(x, 1.0, z);
         let mut cold = Memory::default();
         for memory in [&mut memory, &mut cold] {

@@ -13,7 +13,7 @@ use parry3d::shape::{
     TrianglePseudoNormals,
 };
 use parry3d::utils::Array2;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 
 const CELLS: usize = 8;
 const PREDICTION: Real = 0.02;
@@ -72,8 +72,8 @@ fn grounds() -> Vec<Ground> {
 }
 
 fn hulls() -> Vec<SharedShape> {
-    let mut dice = Dice::new(11);
-    let points: Vec<Vector> = (0..40).map(|_| dice.direction().as_vec3() * 0.6).collect();
+    let mut rng = Rng::new(11);
+    let points: Vec<Vector> = (0..40).map(|_| rng.direction().as_vec3() * 0.6).collect();
     vec![
         SharedShape::convex_hull(&points).expect("points on a ball"),
         SharedShape::new(HullShape::from_points(&points).expect("points on a ball")),

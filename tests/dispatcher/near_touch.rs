@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 use isa_gjk::{HullShape, IsaGjkDispatcher};
 use parry3d::math::{Pose, Real};
 use parry3d::query::QueryDispatcher;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 
 const REGRET: f64 = 1.0e-5;
 
@@ -60,14 +60,14 @@ fn lowest(points: &[Vec3], dir: DVec3) -> f64 {
 #[test]
 fn normals_stay_good_down_to_touching() {
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(10);
+    let mut rng = Rng::new(10);
     let up = DVec3::ONE.normalize();
     for (kind, below, above) in [("tip", BENEATH, TIP), ("keel", RIDGE, KEEL)] {
         let shapes = [below, above].map(|p| HullShape::from_points(&p).expect("a solid"));
         for distance in DISTANCES {
             for _ in 0..50 {
                 // Sideways by about as much, so that no coordinate is a special one.
-                let aside = dice.direction().cross(up) * distance;
+                let aside = rng.direction().cross(up) * distance;
                 let shift = (up * distance + aside).as_vec3();
                 let exact = up.dot(shift.as_dvec3());
                 let pose = Pose::from_translation(shift);

@@ -16,7 +16,7 @@ use parry3d::query::{
     DefaultQueryDispatcher, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
 };
 use testkit::memory::{Manifold, Memory};
-use testkit::zoo::{Exhibit, poses, zoo};
+use testkit::zoo::{ShapeSample, poses, shape_samples};
 
 const PREDICTION: Real = 0.1;
 
@@ -30,9 +30,10 @@ fn nudged(pose: &Pose) -> Pose {
 }
 
 /// Every ordered pair of shapes, but for those that make parry itself panic.
-fn pairs(zoo: &[Exhibit]) -> impl Iterator<Item = [&Exhibit; 2]> {
-    zoo.iter()
-        .flat_map(move |first| zoo.iter().map(move |second| [first, second]))
+fn pairs(samples: &[ShapeSample]) -> impl Iterator<Item = [&ShapeSample; 2]> {
+    samples
+        .iter()
+        .flat_map(move |first| samples.iter().map(move |second| [first, second]))
         .filter(|[first, second]| !parry_panics(first.name, second.name))
 }
 
@@ -45,7 +46,7 @@ fn parry_panics(first: &str, second: &str) -> bool {
 
 fn contacts(
     dispatcher: &impl PersistentQueryDispatcher<(), ()>,
-    pair: [&Exhibit; 2],
+    pair: [&ShapeSample; 2],
     pose: &Pose,
     memory: &mut Memory,
 ) -> bool {
@@ -98,7 +99,7 @@ fn assert_near(ours: &[Manifold], theirs: &[Manifold], what: &str) {
 #[test]
 fn contacts_are_found_wherever_parry_finds_them() {
     let (mut checked, mut in_contact) = (0, 0);
-    for pair in pairs(&zoo()) {
+    for pair in pairs(&shape_samples()) {
         for pose in poses() {
             let dispatcher = IsaGjkDispatcher::default();
             let (mut ours, mut theirs) = (Memory::default(), Memory::default());
@@ -107,9 +108,9 @@ fn contacts_are_found_wherever_parry_finds_them() {
                 let we_can = contacts(&dispatcher, pair, &pose, &mut ours);
                 let they_can = contacts(&DefaultQueryDispatcher, pair, &pose, &mut theirs);
                 assert_eq!(we_can, they_can, "supported: {what}");
-                if pair.iter().any(|exhibit| exhibit.has_hull) {
+                if pair.iter().any(|sample| sample.has_hull) {
                     // Ours to answer.
-                } else if pair.iter().any(|exhibit| exhibit.name == "compound") {
+                } else if pair.iter().any(|sample| sample.name == "compound") {
                     assert_near(&ours.manifolds, &theirs.manifolds, &what);
                 } else {
                     assert_same(&ours.manifolds, &theirs.manifolds, &what);
@@ -124,19 +125,22 @@ fn contacts_are_found_wherever_parry_finds_them() {
         }
     }
     let share = f64::from(in_contact) / f64::from(checked);
-    assert!((0.2..0.9).contains(&share), "the zoo hardly meets: {share}");
+    assert!(
+        (0.2..0.9).contains(&share),
+        "the samples hardly meets: {share}"
+    );
 }
 
 #[test]
 fn scene_queries_are_supported_wherever_parry_supports_them() {
     let ours = IsaGjkDispatcher::default();
     let theirs = DefaultQueryDispatcher;
-    for pair in pairs(&zoo()) {
+    for pair in pairs(&shape_samples()) {
         let (g1, g2) = (&*pair[0].shape, &*pair[1].shape);
         for pose in poses().iter().step_by(5) {
             let agree = |ours: String, theirs: String, query: &str| {
                 let what = format!("{query}, {} / {} at {pose:?}", pair[0].name, pair[1].name);
-                if pair.iter().any(|exhibit| exhibit.has_hull) {
+                if pair.iter().any(|sample| sample.has_hull) {
                     let supported = |answer: &str| answer.starts_with("Ok");
                     assert_eq!(supported(&ours), supported(&theirs), "{what}");
                 } else {

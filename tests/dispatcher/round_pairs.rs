@@ -7,7 +7,7 @@ use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{PersistentQueryDispatcher, QueryDispatcher};
 use parry3d::shape::SharedShape;
 use testkit::cases::Hull;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 use testkit::memory::{Manifold, Memory, cold_manifold};
 use testkit::oracle::{Solid, regret, signed_distance};
 use testkit::pose::ExactPose;
@@ -186,13 +186,13 @@ fn given(pose: ExactPose, swapped: bool) -> (Pose, ExactPose) {
 #[test]
 fn answers_are_exact_cold_and_coherent_in_either_order() {
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(3);
+    let mut rng = Rng::new(3);
     for (size, vertices) in [(1.0, 8), (1.0, 60), (1.0e-3, 20), (30.0, 24), (1.0, 6)] {
-        let hull = dice.hull(vertices, size);
+        let hull = rng.hull(vertices, size);
         for round in rounds(size as Real) {
             let reach = 0.5 * hull.solid.diameter() + 0.5 * round.core.diameter() + round.border;
             let prediction = 0.05 * size;
-            let frames = dice.passage(40, reach);
+            let frames = rng.trajectory(40, reach);
             for swapped in [false, true] {
                 let mut warm = Memory::default();
                 for (i, frame) in frames.iter().enumerate() {
@@ -276,7 +276,7 @@ fn a_lying_capsule_rests_on_both_ends() {
 #[test]
 fn a_rolling_ball_keeps_its_impulse() {
     let dispatcher = IsaGjkDispatcher::default();
-    let (floor, ball) = (Dice::new(8).hull(200, 4.0).shape, SharedShape::ball(0.5));
+    let (floor, ball) = (Rng::new(8).hull(200, 4.0).shape, SharedShape::ball(0.5));
     let top = |x: Real| {
         // Where the ball touches, above the point that it rolls over.
         let apart = |y: Real| {
@@ -333,15 +333,15 @@ fn a_rolling_ball_keeps_its_impulse() {
 #[test]
 fn half_spaces_carry_hulls_on_their_lowest_face() {
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(5);
+    let mut rng = Rng::new(5);
     for (size, vertices) in [(1.0, 8), (1.0, 100), (1.0e-3, 30), (30.0, 30)] {
-        let hull = dice.hull(vertices, size);
-        let up = dice.direction();
+        let hull = rng.hull(vertices, size);
+        let up = rng.direction();
         let normal = up.as_vec3().normalize();
         let up = normal.as_dvec3().normalize();
         let ground = SharedShape::halfspace(normal);
         let prediction = 0.05 * size;
-        for frame in dice.passage(60, 0.5 * hull.solid.diameter()) {
+        for frame in rng.trajectory(60, 0.5 * hull.solid.diameter()) {
             for swapped in [false, true] {
                 let (pose12, pose) = given(frame, swapped);
                 let tolerance = 1.0e-6 * (hull.solid.diameter() + pose.translation.length());

@@ -13,11 +13,11 @@ use parry3d::query::{
 };
 use parry3d::shape::{Shape, SharedShape, Triangle};
 use testkit::cases::{Hull, hulls};
-use testkit::generate::{Dice, prepared};
+use testkit::generate::{Rng, prepared};
 use testkit::oracle::{Solid, signed_distance};
 use testkit::pose::ExactPose;
 use testkit::report::{Finding, Report};
-use testkit::zoo::zoo;
+use testkit::zoo::shape_samples;
 
 /// Relative to the size of the pair.
 const TOLERANCE: f64 = 1.0e-5;
@@ -33,10 +33,9 @@ struct Body {
 }
 
 impl Body {
-    fn new(dice: &mut Dice) -> Self {
-        let parts: Vec<(ExactPose, Hull)> = (0..3)
-            .map(|_| (dice.pose(0.8), dice.hull(24, 0.7)))
-            .collect();
+    fn new(rng: &mut Rng) -> Self {
+        let parts: Vec<(ExactPose, Hull)> =
+            (0..3).map(|_| (rng.pose(0.8), rng.hull(24, 0.7))).collect();
         let shapes = parts
             .iter()
             .map(|(pose, hull)| (pose.to_f32(), hull.shape.clone()));
@@ -90,12 +89,12 @@ fn judge(shapes: [&SharedShape; 2], pose: &ExactPose, exact: f64) -> Finding {
 #[test]
 fn a_compound_is_as_near_as_its_nearest_hull() {
     let mut report = Report::new("compounds of hulls");
-    let mut dice = Dice::new(41);
+    let mut rng = Rng::new(41);
     for turn in 0..60 {
-        let (body, hull) = (Body::new(&mut dice), dice.hull(40, 0.8));
+        let (body, hull) = (Body::new(&mut rng), rng.hull(40, 0.8));
         let prepared = prepared(&hull.shape);
         for _ in 0..4 {
-            let pose = dice.pose(1.6);
+            let pose = rng.pose(1.6);
             let exact = body.signed_distance(&hull.solid, &pose);
             let back = pose.inverse().rounded();
             let exact_back = body.signed_distance(&hull.solid, &back.inverse());
@@ -125,24 +124,24 @@ fn triangles(shape: &dyn Shape) -> Vec<Triangle> {
 #[test]
 fn a_mesh_is_met_as_its_triangles_are() {
     let us = dispatcher();
-    let mut dice = Dice::new(42);
+    let mut rng = Rng::new(42);
     let mut hits = 0;
-    for exhibit in zoo() {
-        let ground = &*exhibit.shape;
+    for sample in shape_samples() {
+        let ground = &*sample.shape;
         let triangles = triangles(ground);
         let first = |times: &mut dyn Iterator<Item = Option<Real>>| {
             times.flatten().fold(Real::INFINITY, Real::min)
         };
         for _ in 0..60 * usize::from(!triangles.is_empty()) {
-            let hull = dice.hull(20, 0.5).shape;
-            let pose = dice.pose(1.0).to_f32();
+            let hull = rng.hull(20, 0.5).shape;
+            let pose = rng.pose(1.0).to_f32();
             let deepest = |shape: &dyn Shape| {
                 let contact = us.contact(&pose, shape, &*hull, 0.1).expect("supported");
                 contact.map(|contact| contact.dist)
             };
             let whole = deepest(ground).unwrap_or(Real::INFINITY);
             let parts = first(&mut triangles.iter().map(|t| deepest(t)));
-            assert_eq!(whole, parts, "contact with the {}", exhibit.name);
+            assert_eq!(whole, parts, "contact with the {}", sample.name);
 
             let start = Pose::from_parts(pose.translation + Vector::Y * 3.0, pose.rotation);
             let options = ShapeCastOptions::default();
@@ -152,7 +151,7 @@ fn a_mesh_is_met_as_its_triangles_are() {
             };
             let whole = cast(ground).unwrap_or(Real::INFINITY);
             let parts = first(&mut triangles.iter().map(|t| cast(t)));
-            assert_eq!(whole, parts, "cast at the {}", exhibit.name);
+            assert_eq!(whole, parts, "cast at the {}", sample.name);
             hits += usize::from(whole.is_finite());
         }
     }
@@ -241,15 +240,15 @@ impl Flight<'_> {
 #[test]
 fn a_cast_ends_where_the_solids_meet() {
     let mut report = Report::new("shape casts");
-    let mut dice = Dice::new(43);
+    let mut rng = Rng::new(43);
     for turn in 0..400 {
-        let [a, b] = [8, 40].map(|corners| dice.hull(corners, 1.0));
-        let pose = dice.pose(3.0);
-        let aim = -pose.translation.normalize_or(DVec3::X) + 0.3 * dice.direction();
+        let [a, b] = [8, 40].map(|corners| rng.hull(corners, 1.0));
+        let pose = rng.pose(3.0);
+        let aim = -pose.translation.normalize_or(DVec3::X) + 0.3 * rng.direction();
         let flight = Flight {
             hulls: [&a, &b],
             pose,
-            velocity: (aim * dice.range(0.5, 3.0)).as_vec3(),
+            velocity: (aim * rng.range(0.5, 3.0)).as_vec3(),
             target: [0.0, 0.1][turn % 2],
         };
         let route = if flight.cast().is_some() {
@@ -333,14 +332,14 @@ fn rounded_borders_are_met_first() {
 /// Where faces overlap the points are one over the other, and on both shapes.
 #[test]
 fn witnesses_of_deep_overlaps_face_each_other() {
-    let mut dice = Dice::new(9);
+    let mut rng = Rng::new(9);
     let mut report = Report::new("witnesses of overlapping faces");
     for name in ["box_unit", "prism16", "prism64_coin"] {
         let Hull { solid, shape } = &hulls()[name];
         let extents = shape.compute_local_aabb().extents().as_dvec3();
         for _ in 0..300 {
-            let turn = DVec3::AXES[dice.count(0, 2)] * dice.range(0.0, 6.0);
-            let aside = [(); 3].map(|()| dice.range(-0.6, 0.6));
+            let turn = DVec3::AXES[rng.count(0, 2)] * rng.range(0.0, 6.0);
+            let aside = [(); 3].map(|()| rng.range(-0.6, 0.6));
             let pose = ExactPose {
                 rotation: DQuat::from_scaled_axis(turn),
                 translation: DVec3::from(aside) * extents,
@@ -376,15 +375,15 @@ fn a_flat_box_ends_where_its_rim_is() {
         Vector::new(1.0, 0.0, 0.2),
     ];
     let tip = SharedShape::convex_hull(&corners).expect("a solid");
-    let mut dice = Dice::new(10);
+    let mut rng = Rng::new(10);
     for _ in 0..2000 {
-        let [x, z] = [(); 2].map(|()| dice.range(0.1, 2.0) as Real);
+        let [x, z] = [(); 2].map(|()| rng.range(0.1, 2.0) as Real);
         let plate = SharedShape::cuboid(x, 0.0, z);
-        let [beside, beyond] = [(); 2].map(|()| dice.range(0.0, 0.3) as Real);
+        let [beside, beyond] = [(); 2].map(|()| rng.range(0.0, 0.3) as Real);
         let pose = Pose::translation(x + beside, 0.0, z + beyond);
         let distance = dispatcher().distance(&pose, &*plate, &*tip);
         let distance = distance.expect("supported").distance;
-        let reach = distance + dice.range(0.01, 0.5) as Real;
+        let reach = distance + rng.range(0.01, 0.5) as Real;
         let contact = dispatcher().contact(&pose, &*plate, &*tip, reach);
         let contact = contact.expect("supported").expect("near").dist;
         assert!(
@@ -436,16 +435,16 @@ fn impossible_casts_meet_nothing() {
 /// to the tolerance of parry's search, in whose every step we are asked for the distance.
 #[test]
 fn spinning_casts_end_in_touch() {
-    let mut dice = Dice::new(44);
+    let mut rng = Rng::new(44);
     let mut hits = 0;
     for turn in 0..100 {
-        let [a, b] = [12, 40].map(|corners| dice.hull(corners, 1.0));
+        let [a, b] = [12, 40].map(|corners| rng.hull(corners, 1.0));
         let start = ExactPose {
             rotation: DQuat::IDENTITY,
-            translation: dice.direction() * 2.5,
+            translation: rng.direction() * 2.5,
         };
         let velocity = -start.translation.as_vec3();
-        let spin = (dice.direction() * 4.0).as_vec3();
+        let spin = (rng.direction() * 4.0).as_vec3();
         let still = NonlinearRigidMotion::identity();
         let motion = NonlinearRigidMotion::new(start.to_f32(), Vector::ZERO, velocity, spin);
         let (g1, g2) = (&*a.shape, &*b.shape);

@@ -11,7 +11,7 @@ use isa_gjk::{HullShape, IsaGjkDispatcher};
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{ClosestPoints, Contact, QueryDispatcher, ShapeCastOptions};
 use parry3d::shape::{Shape, SharedShape};
-use testkit::generate::{Dice, hull_of};
+use testkit::generate::{Rng, hull_of};
 use testkit::memory::Memory;
 use testkit::oracle::Solid;
 use testkit::report::{Finding, Report};
@@ -108,22 +108,22 @@ struct Body {
     surface: Solid,
 }
 
-fn body(dice: &mut Dice, kinds: [Kind; 2]) -> Body {
-    let scale = 2.0_f64.powi([-16, -3, 0, 0, 0, 8][dice.count(0, 5)]);
-    let kind = kinds[dice.count(0, 1)];
+fn body(rng: &mut Rng, kinds: [Kind; 2]) -> Body {
+    let scale = 2.0_f64.powi([-16, -3, 0, 0, 0, 8][rng.count(0, 5)]);
+    let kind = kinds[rng.count(0, 1)];
     let is_around_origin = matches!(kind, Kind::Cuboid | Kind::RoundCuboid | Kind::Ball);
     let offset = if is_around_origin {
         0.0
     } else {
-        [0.0, 256.0][dice.count(0, 1)]
+        [0.0, 256.0][rng.count(0, 1)]
     };
-    let offset = (dice.direction() * offset).round();
+    let offset = (rng.direction() * offset).round();
     let place = |corner: &[i8; 3]| (DVec3::from(corner.map(f64::from)) + offset) * scale;
     let corners: Vec<DVec3> = match kind {
-        Kind::Hull | Kind::HullShape | Kind::RoundHull => SOLIDS[dice.count(0, 5)],
-        Kind::Cuboid | Kind::RoundCuboid => SOLIDS[dice.count(0, 1)],
-        Kind::Triangle => TRIANGLES[dice.count(0, 2)],
-        Kind::Segment | Kind::Capsule => &TRIANGLES[dice.count(0, 2)][1..],
+        Kind::Hull | Kind::HullShape | Kind::RoundHull => SOLIDS[rng.count(0, 5)],
+        Kind::Cuboid | Kind::RoundCuboid => SOLIDS[rng.count(0, 1)],
+        Kind::Triangle => TRIANGLES[rng.count(0, 2)],
+        Kind::Segment | Kind::Capsule => &TRIANGLES[rng.count(0, 2)][1..],
         Kind::Ball => &[[0; 3]],
     }
     .iter()
@@ -135,7 +135,7 @@ fn body(dice: &mut Dice, kinds: [Kind; 2]) -> Body {
         Kind::RoundHull | Kind::RoundCuboid | Kind::Capsule | Kind::Ball
     );
     let border = if has_border {
-        scale * [0.25, 1.0, 8.0][dice.count(0, 2)]
+        scale * [0.25, 1.0, 8.0][rng.count(0, 2)]
     } else {
         0.0
     };
@@ -188,7 +188,7 @@ impl Body {
     }
 
     /// Of the corners that are extreme along a direction one, or the middle of two.
-    fn extreme(&self, along: DVec3, dice: &mut Dice) -> DVec3 {
+    fn extreme(&self, along: DVec3, rng: &mut Rng) -> DVec3 {
         let most = self
             .corners
             .iter()
@@ -200,7 +200,7 @@ impl Body {
             .copied()
             .filter(|p| p.dot(along) == most)
             .collect();
-        let mut any = || extreme[dice.count(0, extreme.len() - 1)];
+        let mut any = || extreme[rng.count(0, extreme.len() - 1)];
         if any() == any() {
             any()
         } else {
@@ -217,9 +217,9 @@ impl Body {
 }
 
 /// The turns that take axes to axes.
-fn quarter_turns(dice: &mut Dice) -> DQuat {
-    let axis = [DVec3::X, DVec3::Y, DVec3::Z][dice.count(0, 2)];
-    match dice.count(0, 3) {
+fn quarter_turns(rng: &mut Rng) -> DQuat {
+    let axis = [DVec3::X, DVec3::Y, DVec3::Z][rng.count(0, 2)];
+    match rng.count(0, 3) {
         0 | 1 => DQuat::IDENTITY,
         2 => DQuat::from_vec4(axis.extend(0.0)),
         _ => DQuat::from_vec4((axis * FRAC_1_SQRT_2).extend(FRAC_1_SQRT_2)),
@@ -404,9 +404,9 @@ impl Scene<'_> {
 
 /// A few directions along which features of solids are extreme; with rounded borders only those along
 /// which a length is exact.
-fn direction(dice: &mut Dice, is_rounded: bool) -> DVec3 {
+fn direction(rng: &mut Rng, is_rounded: bool) -> DVec3 {
     loop {
-        let direction = DVec3::from([(); 3].map(|()| dice.count(0, 4) as f64 - 2.0));
+        let direction = DVec3::from([(); 3].map(|()| rng.count(0, 4) as f64 - 2.0));
         let is_along_axis = direction.length() == direction.element_sum().abs();
         if direction != DVec3::ZERO && (is_along_axis || !is_rounded) {
             return direction;
@@ -430,17 +430,17 @@ const STEPS: [(&str, f64); 3] = [("at", 0.0), ("above", STEP), ("below", -STEP)]
 
 #[test]
 fn all_queries_agree_at_above_and_below_touching() {
-    let mut dice = Dice::new(17);
+    let mut rng = Rng::new(17);
     let mut report = Report::new("exact touches");
     for round in 0..3000 {
         let [a, b] = [
-            body(&mut dice, HULLS),
-            body(&mut dice, OTHERS[round % OTHERS.len()]),
+            body(&mut rng, HULLS),
+            body(&mut rng, OTHERS[round % OTHERS.len()]),
         ];
-        let rotation = quarter_turns(&mut dice);
-        let along = direction(&mut dice, b.border > 0.0);
-        let on_a = a.extreme(along, &mut dice);
-        let on_b = b.extreme(-(rotation.inverse() * along).round(), &mut dice);
+        let rotation = quarter_turns(&mut rng);
+        let along = direction(&mut rng, b.border > 0.0);
+        let on_a = a.extreme(along, &mut rng);
+        let on_b = b.extreme(-(rotation.inverse() * along).round(), &mut rng);
         let touching = on_a - rotation * on_b + along.normalize() * b.border;
         let middle = a.middle() - rotation * b.middle();
         for (name, step) in STEPS {
@@ -514,7 +514,7 @@ fn who_says_that_they_meet(pose: &Pose, shapes: [&SharedShape; 2]) -> Vec<(&'sta
 /// On half-spaces, and on curved shapes, where parry says how deep the overlap is.
 #[test]
 fn smooth_shapes_meet_for_all_queries_or_for_none() {
-    let mut dice = Dice::new(18);
+    let mut rng = Rng::new(18);
     // A point of each with its normal along y.
     let others = [
         (SharedShape::halfspace(Vector::Y), DVec3::ZERO),
@@ -524,9 +524,9 @@ fn smooth_shapes_meet_for_all_queries_or_for_none() {
         (SharedShape::round_cylinder(1.0, 0.5, 0.25), DVec3::Y * 1.25),
     ];
     for round in 0..2000 {
-        let hull = body(&mut dice, HULLS);
-        let rotation = quarter_turns(&mut dice);
-        let lowest = hull.extreme((rotation.inverse() * DVec3::NEG_Y).round(), &mut dice);
+        let hull = body(&mut rng, HULLS);
+        let rotation = quarter_turns(&mut rng);
+        let lowest = hull.extreme((rotation.inverse() * DVec3::NEG_Y).round(), &mut rng);
         let (other, top) = &others[round % others.len()];
         for step in [0.0, STEP, -STEP] {
             // More than the gap that GJK leaves on curved shapes.

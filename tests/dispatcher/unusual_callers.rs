@@ -17,7 +17,7 @@ use parry3d::shape::{
     Ball, Cuboid, FeatureId, PolygonalFeature, PolygonalFeatureMap, Shape, ShapeType, SharedShape,
     SupportMap, TypedShape,
 };
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 use testkit::memory::cold_manifold;
 
 /// Asks the dispatcher about its shapes before it lets a normal pass.
@@ -45,8 +45,8 @@ impl NormalConstraints for Asks {
 #[test]
 fn a_query_within_a_query_is_answered() {
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(141);
-    let mut hull = || dice.hull(30, 1.0).shape;
+    let mut rng = Rng::new(141);
+    let mut hull = || rng.hull(30, 1.0).shape;
     let asks = Asks {
         dispatcher: dispatcher.clone(),
         shapes: [hull(), hull()],
@@ -95,10 +95,10 @@ fn a_thread_that_ends_may_ask() {
         static LAST: RefCell<AsksAtTheEnd> = const { RefCell::new(AsksAtTheEnd(None)) };
     }
     let asking = thread::spawn(|| {
-        let mut dice = Dice::new(142);
+        let mut rng = Rng::new(142);
         let asks = Asks {
             dispatcher: IsaGjkDispatcher::default(),
-            shapes: [(); 2].map(|()| dice.hull(30, 1.0).shape),
+            shapes: [(); 2].map(|()| rng.hull(30, 1.0).shape),
             answers: RefCell::default(),
         };
         // What is used first goes last, on most systems; ours is to be gone before.
@@ -205,10 +205,10 @@ impl Shape for Shows {
 #[test]
 fn a_shape_is_not_taken_for_what_it_shows() {
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(143);
-    let hull = dice.hull(30, 1.0).shape;
+    let mut rng = Rng::new(143);
+    let hull = rng.hull(30, 1.0).shape;
     let shown = [
-        dice.hull(30, 4.0).shape,
+        rng.hull(30, 4.0).shape,
         SharedShape::round_cuboid(1.5, 1.5, 1.5, 0.5),
         SharedShape::new(Cuboid::new(Vector::splat(2.0))),
         SharedShape::ball(2.0),

@@ -7,22 +7,22 @@
 use isa_gjk::{IsaGjkDispatcher, Stage};
 use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, QueryDispatcher};
-use testkit::generate::{Dice, hull_of};
+use testkit::generate::{Rng, hull_of};
 
 const FRAMES: usize = 200;
 
 /// How many updates of a ball of points that rolls around another were answered by GJK, and by EPA.
-fn searches(dice: &mut Dice) -> [u64; 2] {
+fn searches(rng: &mut Rng) -> [u64; 2] {
     let [a, b] = [(); 2].map(|()| {
         loop {
-            let points: Vec<Vector> = (0..1000).map(|_| dice.direction().as_vec3()).collect();
+            let points: Vec<Vector> = (0..1000).map(|_| rng.direction().as_vec3()).collect();
             if let Some(hull) = hull_of(&points) {
                 break hull.shape;
             }
         }
     });
-    let (axis, start) = (dice.direction().as_vec3(), dice.direction().as_vec3());
-    let (spin, tilt) = (dice.direction().as_vec3(), dice.direction().as_vec3());
+    let (axis, start) = (rng.direction().as_vec3(), rng.direction().as_vec3());
+    let (spin, tilt) = (rng.direction().as_vec3(), rng.direction().as_vec3());
     let pose = |frame: usize| {
         // As far as contacts move before rapier asks about them again.
         let angle = 0.05 * frame as Real;
@@ -58,10 +58,10 @@ fn searches(dice: &mut Dice) -> [u64; 2] {
 /// There were 31 and 649 in these 2,000 updates.
 #[test]
 fn a_contact_that_rolls_over_small_facets_is_walked_after() {
-    let mut dice = Dice::new(9);
+    let mut rng = Rng::new(9);
     let [mut gjk, mut epa] = [0; 2];
     for _ in 0..10 {
-        let [of_gjk, of_epa] = searches(&mut dice);
+        let [of_gjk, of_epa] = searches(&mut rng);
         gjk += of_gjk;
         epa += of_epa;
     }

@@ -6,7 +6,7 @@ use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::Real;
 use parry3d::query::{Contact, QueryDispatcher};
 use testkit::cases::Hull;
-use testkit::generate::{Dice, hull_of};
+use testkit::generate::{Rng, hull_of};
 use testkit::memory::Memory;
 use testkit::oracle::signed_distance;
 use testkit::pose::ExactPose;
@@ -63,18 +63,18 @@ fn judge(shapes: [&Hull; 2], pose: &ExactPose, contact: Option<&Contact>, exact:
 
 #[test]
 fn witnesses_lie_on_both_surfaces() {
-    let mut dice = Dice::new(1);
+    let mut rng = Rng::new(1);
     let mut report = Report::new("witnesses of overlaps");
     for round in 0..1500 {
         let size = if round % 2 == 0 {
             1.0
         } else {
-            10_f64.powf(dice.range(-3.0, 0.0))
+            10_f64.powf(rng.range(-3.0, 0.0))
         };
-        let hulls = [dice.any_hull(1.0), dice.any_hull(size)];
+        let hulls = [rng.any_hull(1.0), rng.any_hull(size)];
         let pose = ExactPose {
-            rotation: dice.any_turn(),
-            translation: dice.any_place(0.5 * (1.0 + size)),
+            rotation: rng.any_turn(),
+            translation: rng.any_place(0.5 * (1.0 + size)),
         };
         let (one, other) = ([&hulls[0], &hulls[1]], [&hulls[1], &hulls[0]]);
         for (shapes, pose) in [(one, pose.rounded()), (other, pose.inverse().rounded())] {

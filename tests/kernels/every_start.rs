@@ -7,12 +7,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::{DQuat, DVec3, EulerRot, Vec3};
 use isa_gjk::stats::Cost;
 use isa_gjk::support::{FaceId, Polytope, Support, VertexId};
-use isa_gjk::tolerance::PLATEAU;
+use isa_gjk::tolerance::SUPPORT_TIE;
 use isa_gjk::{Hull, HullError, HullShape, IsaGjkDispatcher};
 use parry3d::math::Pose;
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::SharedShape;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 
 /// A surface: points and triangles.
 type Mesh = (Vec<DVec3>, Vec<[u32; 3]>);
@@ -117,36 +117,36 @@ fn map(mesh: &Mesh, mut to: impl FnMut(DVec3) -> DVec3) -> Mesh {
 
 /// Normals of faces and their opposites, which are the worst, tilted by little or much; directions
 /// across edges, and any.
-fn directions(hull: &Hull, dice: &mut Dice) -> Vec<DVec3> {
+fn directions(hull: &Hull, rng: &mut Rng) -> Vec<DVec3> {
     const FACES: usize = 4;
     const TILTS: [f64; 8] = [0.0, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
     let mut dirs = Vec::new();
     for face in (0..hull.face_count()).step_by(hull.face_count() / FACES + 1) {
         for by in TILTS {
-            let dir = hull.face_normal(face as FaceId) + dice.direction() * by;
+            let dir = hull.face_normal(face as FaceId) + rng.direction() * by;
             dirs.extend([dir, -dir]);
         }
-        let v = dice.count(0, hull.points().len() - 1) as VertexId;
+        let v = rng.count(0, hull.points().len() - 1) as VertexId;
         let w = hull.neighbors(v).next().expect("a vertex has neighbours");
-        dirs.push((hull.vertex(v) - hull.vertex(w)).cross(dice.direction()));
-        dirs.push(dice.direction());
+        dirs.push((hull.vertex(v) - hull.vertex(w)).cross(rng.direction()));
+        dirs.push(rng.direction());
     }
     dirs.retain(|dir| dir.length() > 0.0);
     dirs
 }
 
 /// The most that a climb loses, in plateaus: from every vertex, or of large hulls from every few.
-fn worst_climb(hull: &Hull, dice: &mut Dice) -> f64 {
+fn worst_climb(hull: &Hull, rng: &mut Rng) -> f64 {
     const STARTS: usize = 350;
     let count = hull.points().len();
     let mut worst = 0.0_f64;
-    for dir in directions(hull, dice) {
+    for dir in directions(hull, rng) {
         let heights = hull.points().iter().map(|p| dir.dot(p.as_dvec3()));
         let most = heights.fold(f64::NEG_INFINITY, f64::max);
         for start in (0..count).step_by(count / STARTS + 1) {
             let (found, _) = hull.support(dir, start as VertexId, &mut Cost::default());
             let lost = most - dir.dot(found);
-            worst = worst.max(lost / (PLATEAU * hull.radius() * dir.length()));
+            worst = worst.max(lost / (SUPPORT_TIE * hull.radius() * dir.length()));
         }
     }
     worst
@@ -164,17 +164,17 @@ const HALVES: [DVec3; 4] = [
 
 #[test]
 fn climbs_on_divided_sides_end_at_the_top() {
-    let mut dice = Dice::new(5);
+    let mut rng = Rng::new(5);
     for cells in [4, 5, 12, 30, 79] {
         for half in HALVES {
             let by = [
                 DQuat::from_euler(EulerRot::XYZ, 1.4, 0.6, 0.0),
-                dice.rotation(),
+                rng.rotation(),
             ];
             for by in by {
                 let mesh = map(&divided_block(cells, half), |p| by * p);
                 let hull = build(&mesh).expect("a block");
-                let worst = worst_climb(&hull, &mut dice);
+                let worst = worst_climb(&hull, &mut rng);
                 assert!(
                     worst <= PROMISED,
                     "{cells} cells of {half}: {worst} plateaus"
@@ -187,17 +187,17 @@ fn climbs_on_divided_sides_end_at_the_top() {
 /// As scanned plates are. Where noise is steeper than building takes there is no hull.
 #[test]
 fn climbs_on_noisy_sides_end_at_the_top() {
-    let mut dice = Dice::new(6);
+    let mut rng = Rng::new(6);
     let mut built = 0;
     for cells in [4, 12, 30, 79] {
         for half in HALVES {
             for noise in [1e-7, 3e-7, 1e-6] {
-                let by = dice.rotation();
+                let by = rng.rotation();
                 let block = divided_block(cells, half);
-                let mesh = map(&block, |p| by * p + dice.direction() * noise);
+                let mesh = map(&block, |p| by * p + rng.direction() * noise);
                 let Ok(hull) = build(&mesh) else { continue };
                 built += 1;
-                let worst = worst_climb(&hull, &mut dice);
+                let worst = worst_climb(&hull, &mut rng);
                 assert!(
                     worst <= PROMISED,
                     "{cells} cells of {half}, {noise}: {worst} plateaus"
@@ -210,7 +210,7 @@ fn climbs_on_noisy_sides_end_at_the_top() {
 
 #[test]
 fn climbs_on_divided_facets_end_at_the_top() {
-    let mut dice = Dice::new(7);
+    let mut rng = Rng::new(7);
     for times in 1..=4 {
         for on_sphere in [false, true] {
             for stretch in [
@@ -218,12 +218,12 @@ fn climbs_on_divided_facets_end_at_the_top() {
                 DVec3::new(1.0, 1.0, 0.01),
                 DVec3::new(0.01, 0.01, 1.0),
             ] {
-                let by = dice.rotation();
+                let by = rng.rotation();
                 let mesh = map(&divided_icosahedron(times, on_sphere), |p| {
                     by * (p * stretch)
                 });
                 let hull = build(&mesh).expect("an icosahedron");
-                let worst = worst_climb(&hull, &mut dice);
+                let worst = worst_climb(&hull, &mut rng);
                 assert!(
                     worst <= PROMISED,
                     "{times} times, {on_sphere}, {stretch}: {worst}"

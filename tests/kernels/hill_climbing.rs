@@ -7,9 +7,9 @@ use glam::{DQuat, DVec2, DVec3, Vec3};
 use isa_gjk::Hull;
 use isa_gjk::stats::Cost;
 use isa_gjk::support::{Polytope, Support};
-use isa_gjk::tolerance::{CONVEXITY, PLATEAU};
+use isa_gjk::tolerance::{MAX_DENT, SUPPORT_TIE};
 use testkit::cases::hulls;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 
 /// The climb as it was published (Cameron 1997): move to a better neighbour while there is one.
 /// Kept here to show where it fails.
@@ -104,7 +104,7 @@ struct Tally {
 impl Tally {
     fn climb(&mut self, name: &str, hull: &Hull, dir: DVec3, starts: impl Iterator<Item = u32>) {
         let best = scan(hull, dir);
-        let allowed = PLATEAU * hull.radius() * dir.length();
+        let allowed = SUPPORT_TIE * hull.radius() * dir.length();
         for start in starts {
             let (point, id) = hull.support(dir, start, &mut Cost::default());
             assert_eq!(point, hull.vertex(id));
@@ -143,13 +143,13 @@ fn a_million_random_climbs_end_at_the_top() {
     const CLIMBS: usize = 1_000_000;
     let builds = builds();
     let each = CLIMBS / builds.len() + 1;
-    let mut dice = Dice::new(1997);
+    let mut rng = Rng::new(1997);
     let mut tally = Tally::default();
     for (name, hull) in &builds {
         let last = hull.points().len() - 1;
         for _ in 0..each {
-            let dir = dice.direction() * 10_f64.powf(dice.range(-6.0, 6.0));
-            let start = dice.count(0, last) as u32;
+            let dir = rng.direction() * 10_f64.powf(rng.range(-6.0, 6.0));
+            let start = rng.count(0, last) as u32;
             tally.climb(name, hull, dir, std::iter::once(start));
         }
     }
@@ -159,19 +159,19 @@ fn a_million_random_climbs_end_at_the_top() {
 
 /// Directions along which many vertices tie, or almost: the normals of faces, and directions
 /// square to an edge or along it.
-fn adversarial_directions(hull: &Hull, dice: &mut Dice, most: usize) -> Vec<DVec3> {
+fn adversarial_directions(hull: &Hull, rng: &mut Rng, most: usize) -> Vec<DVec3> {
     let mut exact = Vec::new();
     for _ in 0..most.min(hull.face_count()) {
-        let face = dice.count(0, hull.face_count() - 1) as u32;
+        let face = rng.count(0, hull.face_count() - 1) as u32;
         exact.push(hull.face_normal(face));
     }
     for _ in 0..most {
-        let v = dice.count(0, hull.points().len() - 1) as u32;
+        let v = rng.count(0, hull.points().len() - 1) as u32;
         let around: Vec<_> = hull.neighbors(v).collect();
-        let edge = hull.vertex(around[dice.count(0, around.len() - 1)]) - hull.vertex(v);
+        let edge = hull.vertex(around[rng.count(0, around.len() - 1)]) - hull.vertex(v);
         exact.extend([
             edge,
-            edge.cross(dice.direction()),
+            edge.cross(rng.direction()),
             edge.cross(hull.vertex(v)),
         ]);
     }
@@ -179,33 +179,33 @@ fn adversarial_directions(hull: &Hull, dice: &mut Dice, most: usize) -> Vec<DVec
     let nudged: Vec<DVec3> = exact
         .iter()
         .flat_map(|d| [1.0e-7, 1.0e-6, 1.0e-5, 1.0e-4, 1.0e-3].map(|by| (*d, by)))
-        .map(|(d, by)| d + dice.direction() * d.length() * by)
+        .map(|(d, by)| d + rng.direction() * d.length() * by)
         .collect();
     exact.extend(nudged);
     exact.iter().flat_map(|d| [*d, -*d]).collect()
 }
 
 /// Every vertex of small hulls; of large ones the vertices around the lowest, and some others.
-fn adversarial_starts(hull: &Hull, dir: DVec3, dice: &mut Dice) -> Vec<u32> {
+fn adversarial_starts(hull: &Hull, dir: DVec3, rng: &mut Rng) -> Vec<u32> {
     const SMALL: usize = 64;
     let count = hull.points().len();
     if count <= SMALL {
         return (0..count as u32).collect();
     }
-    let (_, lowest) = hull.support(-dir, hull.start(-dir), &mut Cost::default());
-    let random = (0..8).map(|_| dice.count(0, count - 1) as u32);
+    let (_, lowest) = hull.support(-dir, hull.start_vertex(-dir), &mut Cost::default());
+    let random = (0..8).map(|_| rng.count(0, count - 1) as u32);
     hull.neighbors(lowest)
-        .chain([lowest, hull.start(dir)])
+        .chain([lowest, hull.start_vertex(dir)])
         .chain(random)
         .collect()
 }
 
 fn climb_adversarially(kind: &str, builds: &[(String, Hull)], most: usize, limit: f64) {
-    let mut dice = Dice::new(4);
+    let mut rng = Rng::new(4);
     let mut tally = Tally::default();
     for (name, hull) in builds {
-        for dir in adversarial_directions(hull, &mut dice, most) {
-            let starts = adversarial_starts(hull, dir, &mut dice);
+        for dir in adversarial_directions(hull, &mut rng, most) {
+            let starts = adversarial_starts(hull, dir, &mut rng);
             tally.climb(name, hull, dir, starts.into_iter());
         }
     }
@@ -226,7 +226,7 @@ fn turned(points: &[Vec3], by: DQuat) -> Vec<Vec3> {
 
 /// The published hulls turned, those that build; and how many do not.
 fn rounded_builds() -> (Vec<(String, Hull)>, Vec<String>) {
-    let mut dice = Dice::new(32);
+    let mut rng = Rng::new(32);
     let (mut builds, mut refused) = (Vec::new(), Vec::new());
     let mut names: Vec<_> = hulls().keys().collect();
     names.sort();
@@ -234,7 +234,7 @@ fn rounded_builds() -> (Vec<(String, Hull)>, Vec<String>) {
         let solid = &hulls()[name].solid;
         let points: Vec<Vec3> = solid.points.iter().map(|p| p.as_vec3()).collect();
         for _ in 0..4 {
-            let points = turned(&points, dice.rotation());
+            let points = turned(&points, rng.rotation());
             let by_points = Hull::from_points(&points);
             for hull in [Hull::from_triangles(points, solid.faces()), by_points] {
                 match hull {
@@ -269,14 +269,14 @@ fn rounded_hulls_build() {
 
 /// Spikes on rough discs, and long prisms: the builder, working in f32, takes their cross-section
 /// for rounding, and folds their surface or wraps it around them twice.
-fn needles(dice: &mut Dice, length: f64) -> Vec<(String, Hull)> {
+fn needles(rng: &mut Rng, length: f64) -> Vec<(String, Hull)> {
     let mut needles = Vec::new();
     for i in 0..80 {
         let mut spike: Vec<DVec3> = (0..20)
-            .map(|_| dice.direction() * DVec3::new(1.0, 1.0, 0.01))
+            .map(|_| rng.direction() * DVec3::new(1.0, 1.0, 0.01))
             .collect();
         spike.push(DVec3::new(0.001, -0.002, length));
-        let sides = dice.count(4, 16);
+        let sides = rng.count(4, 16);
         let corner = |k: usize| DVec2::from_angle(TAU * k as f64 / sides as f64);
         let prism = (0..sides)
             .flat_map(|k| [-0.5, 0.5].map(|end| corner(k).extend(end * length)))
@@ -292,12 +292,12 @@ fn needles(dice: &mut Dice, length: f64) -> Vec<(String, Hull)> {
 }
 
 fn climb_needles(length: f64, limit: f64) {
-    let mut dice = Dice::new(1000);
-    let needles = needles(&mut dice, length);
+    let mut rng = Rng::new(1000);
+    let needles = needles(&mut rng, length);
     let mut tally = Tally::default();
     for (name, hull) in &needles {
         // Across the needle as often as along it.
-        let dirs = (0..200).map(|_| dice.direction() / DVec3::new(1.0, 1.0, length));
+        let dirs = (0..200).map(|_| rng.direction() / DVec3::new(1.0, 1.0, length));
         for dir in dirs.collect::<Vec<_>>() {
             tally.climb(name, hull, dir, 0..hull.points().len() as u32);
         }
@@ -318,7 +318,7 @@ fn climbs_on_needles_end_at_the_top() {
 #[test]
 fn climbs_on_the_thinnest_needles_end_near_the_top() {
     for length in [1.0e4, 1.0e5] {
-        climb_needles(length, 2.0 * CONVEXITY / PLATEAU);
+        climb_needles(length, 2.0 * MAX_DENT / SUPPORT_TIE);
     }
 }
 

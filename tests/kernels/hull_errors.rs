@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use isa_gjk::stats::Cost;
 use isa_gjk::support::{Polytope, Support};
 use isa_gjk::{Hull, HullError};
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
 
@@ -241,12 +241,12 @@ fn surfaces_that_go_round_twice() {
 
 #[test]
 fn duplicates_do_not_disturb_a_point_cloud() {
-    let mut dice = Dice::new(3);
-    let points: Vec<Vec3> = (0..40).map(|_| dice.direction().as_vec3()).collect();
+    let mut rng = Rng::new(3);
+    let points: Vec<Vec3> = (0..40).map(|_| rng.direction().as_vec3()).collect();
     let once = Hull::from_points(&points).expect("points on a sphere");
     let thrice = Hull::from_points(&[&points[..]; 3].concat()).expect("the same points");
     for _ in 0..200 {
-        let dir = dice.direction();
+        let dir = rng.direction();
         assert_eq!(height(&once, dir), height(&thrice, dir), "{dir}");
     }
 }
@@ -277,19 +277,22 @@ fn every_error_says_what_is_wrong() {
 }
 
 fn height(hull: &Hull, dir: DVec3) -> f64 {
-    dir.dot(hull.support(dir, hull.start(dir), &mut Cost::default()).0)
+    dir.dot(
+        hull.support(dir, hull.start_vertex(dir), &mut Cost::default())
+            .0,
+    )
 }
 
 /// Builds points on an ellipsoid, and checks supports against the points.
 fn build_ellipsoid(count: usize, radii: DVec3, center: DVec3) -> Hull {
-    let mut dice = Dice::new(8);
+    let mut rng = Rng::new(8);
     let points: Vec<Vec3> = (0..count)
-        .map(|_| (center + radii * dice.direction()).as_vec3())
+        .map(|_| (center + radii * rng.direction()).as_vec3())
         .collect();
     let hull =
         Hull::from_points(&points).unwrap_or_else(|e| panic!("{count} points, radii {radii}: {e}"));
     for _ in 0..200 {
-        let dir = dice.direction();
+        let dir = rng.direction();
         let best = points
             .iter()
             .map(|p| dir.dot(p.as_dvec3()))
@@ -320,7 +323,7 @@ fn pebbles_needles_and_cliffs_are_built() {
 /// out.
 #[test]
 fn thin_clouds_keep_their_corners() {
-    let mut dice = Dice::new(8);
+    let mut rng = Rng::new(8);
     let corner = |i: u32| DVec3::from([0, 1, 2].map(|k| f64::from(i >> k & 1) - 0.5));
     for extents in [
         [1.0, 1e-3, 1.0],
@@ -329,12 +332,12 @@ fn thin_clouds_keep_their_corners() {
         [1e-3, 1.0, 1e-3],
     ] {
         for _ in 0..100 {
-            let turn = dice.rotation();
+            let turn = rng.rotation();
             let place = |p: DVec3| (turn * (p * DVec3::from(extents))).as_vec3();
             let corners: Vec<Vec3> = (0..8).map(corner).map(place).collect();
             let hull = Hull::from_points(&corners).expect("a solid");
             assert_eq!(hull.points().len(), 8, "{extents:?}: {corners:?}");
-            let cloud: Vec<Vec3> = (0..30).map(|_| place(dice.direction())).collect();
+            let cloud: Vec<Vec3> = (0..30).map(|_| place(rng.direction())).collect();
             let hull = Hull::from_points(&cloud).expect("a solid");
             for face in 0..hull.face_count() as u32 {
                 let height = |p: &Vec3| hull.face_normal(face).dot(p.as_dvec3());
@@ -361,11 +364,11 @@ fn a_needle_of_boxes_edges_is_built() {
 
 #[test]
 fn flat_bipyramids_are_built_however_they_lie() {
-    let mut dice = Dice::new(64);
+    let mut rng = Rng::new(64);
     for size in [1.0e-3, 1.0, 30.0] {
         for height in [1.0e-2, 1.0e-3, 1.0e-4] {
             for corners in [5, 64] {
-                let turn = dice.rotation();
+                let turn = rng.rotation();
                 let rim = (0..corners).map(|i| {
                     let (sin, cos) = (TAU * f64::from(i) / f64::from(corners)).sin_cos();
                     DVec3::new(cos, sin, 0.0)
@@ -391,8 +394,8 @@ fn hulls_far_from_their_origin_are_built() {
 
 #[test]
 fn a_thousand_vertices_are_built_in_no_time() {
-    let mut dice = Dice::new(1000);
-    let points: Vec<Vec3> = (0..1000).map(|_| dice.direction().as_vec3()).collect();
+    let mut rng = Rng::new(1000);
+    let points: Vec<Vec3> = (0..1000).map(|_| rng.direction().as_vec3()).collect();
     let (vertices, triangles) =
         parry3d::transformation::try_convex_hull(&points).expect("points on a sphere");
     let clock = Instant::now();

@@ -3,7 +3,7 @@
 use glam::{DQuat, DVec3, Vec3};
 use isa_gjk::epa::EpaScratch;
 use isa_gjk::pose::RelativePose;
-use isa_gjk::query::{Answer, Memory, Proximity, Query};
+use isa_gjk::query::{Answer, PairMemory, Proximity, Query};
 use isa_gjk::stats::Cost;
 use isa_gjk::support::{Cso, Polytope, Support};
 use isa_gjk::{Hull, IsaGjkDispatcher};
@@ -11,7 +11,7 @@ use parry3d::math::Pose;
 use parry3d::query::{Contact, QueryDispatcher};
 use parry3d::shape::SharedShape;
 use proptest::prelude::*;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 
 /// Relative to the pair's size: a depth is certified to 1e-6 of the smaller radius, and both
 /// answers that are compared may be off by that.
@@ -78,7 +78,7 @@ fn shape(points: &[Vec3]) -> SharedShape {
     SharedShape::convex_hull(points).expect("filtered")
 }
 
-fn near(hulls: [&Hull; 2], pose: &Pose, memory: &Memory) -> Proximity {
+fn near(hulls: [&Hull; 2], pose: &Pose, memory: &PairMemory) -> Proximity {
     let pose = RelativePose::new(pose).expect("a finite pose");
     let query = Query {
         cso: &Cso {
@@ -87,7 +87,7 @@ fn near(hulls: [&Hull; 2], pose: &Pose, memory: &Memory) -> Proximity {
             pose: &pose,
         },
         max_distance: f64::INFINITY,
-        shells: None,
+        polytope_cache: None,
         scratch: &mut EpaScratch::default(),
         cost: &mut Cost::default(),
     }
@@ -140,13 +140,13 @@ proptest! {
         let hulls = pair.hulls.each_ref().map(|h| build(h));
         let hulls = hulls.each_ref();
         let pose = RelativePose::new(&pair.pose).expect("finite");
-        let found = near(hulls, &pair.pose, &Memory::None);
+        let found = near(hulls, &pair.pose, &PairMemory::None);
         let shown = separation(hulls, &pose, found.normal);
         prop_assert!((shown - found.signed_distance).abs() <= TOLERANCE * size(hulls), "{shown} {found:?}");
-        let mut dice = Dice::new(seed.into());
+        let mut rng = Rng::new(seed.into());
         let faces = hulls[0].face_count() as u32;
         let normals = (0..faces).map(|f| hulls[0].face_normal(f).normalize());
-        let near_it = (0..50).map(|_| (found.normal + dice.direction() * 0.1).normalize());
+        let near_it = (0..50).map(|_| (found.normal + rng.direction() * 0.1).normalize());
         for n in normals.chain(near_it) {
             let other = separation(hulls, &pose, n);
             prop_assert!(other <= found.signed_distance + TOLERANCE * size(hulls), "{n}: {other} {found:?}");
@@ -158,7 +158,7 @@ proptest! {
         let hulls = pair.hulls.each_ref().map(|h| build(h));
         let hulls = hulls.each_ref();
         let pose = RelativePose::new(&pair.pose).expect("finite");
-        let found = near(hulls, &pair.pose, &Memory::None);
+        let found = near(hulls, &pair.pose, &PairMemory::None);
         let slack = TOLERANCE * size(hulls);
         prop_assert!((found.normal.length() - 1.0).abs() < 1.0e-9);
         prop_assert!(outside(hulls[0], found.on_1) <= slack, "{found:?}");
@@ -171,9 +171,9 @@ proptest! {
     fn swapping_the_shapes_changes_nothing(pair in pair()) {
         let hulls = pair.hulls.each_ref().map(|h| build(h));
         let [a, b] = hulls.each_ref();
-        let there = near([a, b], &pair.pose, &Memory::None).signed_distance;
+        let there = near([a, b], &pair.pose, &PairMemory::None).signed_distance;
         // The inverse pose is rounded to f32.
-        let back = near([b, a], &pair.pose.inverse(), &Memory::None).signed_distance;
+        let back = near([b, a], &pair.pose.inverse(), &PairMemory::None).signed_distance;
         prop_assert!((there - back).abs() <= (TOLERANCE + SINGLE) * size([a, b]), "{there} {back}");
         let shapes = pair.hulls.each_ref().map(|h| shape(h));
         let there = contact([&shapes[0], &shapes[1]], &pair.pose).dist;
@@ -202,8 +202,8 @@ proptest! {
         });
         let [[a, small_a], [b, small_b]] = &scaled;
         let pose = Pose::from_parts(pair.pose.translation * scale, pair.pose.rotation);
-        let one = near([small_a, small_b], &pair.pose, &Memory::None);
-        let many = near([a, b], &pose, &Memory::None);
+        let one = near([small_a, small_b], &pair.pose, &PairMemory::None);
+        let many = near([a, b], &pose, &PairMemory::None);
         let factor = f64::from(scale);
         let error = (many.signed_distance - one.signed_distance * factor).abs();
         prop_assert!(error <= 1.0e-12 * factor * size([small_a, small_b]), "{one:?} {many:?}");
@@ -214,14 +214,14 @@ proptest! {
     fn memory_changes_nothing(pair in pair(), before in pose(1.5), nudge in pose(0.01)) {
         let hulls = pair.hulls.each_ref().map(|h| build(h));
         let hulls = hulls.each_ref();
-        let cold = near(hulls, &pair.pose, &Memory::None).signed_distance;
+        let cold = near(hulls, &pair.pose, &PairMemory::None).signed_distance;
         // A memory of this very pose, of one near it, and of an unrelated one.
         let close = Pose::from_parts(pair.pose.translation + nudge.translation, pair.pose.rotation);
         for old in [pair.pose, close, before] {
-            let was = near(hulls, &old, &Memory::None);
+            let was = near(hulls, &old, &PairMemory::None);
             for memory in [
-                Memory::Contact(was.normal, was.features),
-                Memory::Axis(was.normal, [0, 0]),
+                PairMemory::Contact(was.normal, was.features),
+                PairMemory::Axis(was.normal, [0, 0]),
             ] {
                 let warm = near(hulls, &pair.pose, &memory).signed_distance;
                 prop_assert!((warm - cold).abs() <= TOLERANCE * size(hulls), "{cold} {warm} {memory:?}");
@@ -233,7 +233,7 @@ proptest! {
     fn the_dispatcher_says_what_the_query_says(pair in pair()) {
         let hulls = pair.hulls.each_ref().map(|h| build(h));
         let shapes = pair.hulls.each_ref().map(|h| shape(h));
-        let found = near(hulls.each_ref(), &pair.pose, &Memory::None);
+        let found = near(hulls.each_ref(), &pair.pose, &PairMemory::None);
         let contact = contact([&shapes[0], &shapes[1]], &pair.pose);
         let limit = (TOLERANCE + SINGLE) * size(hulls.each_ref());
         prop_assert!((f64::from(contact.dist) - found.signed_distance).abs() <= limit, "{contact:?} {found:?}");

@@ -10,7 +10,7 @@ use isa_gjk::stats::Cost;
 use isa_gjk::support::{Cso, Support, VertexId};
 use parry3d::math::Pose;
 use testkit::cases::{self, hulls};
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 use testkit::report::{Finding, Report};
 
 /// Relative to the pair's size: what the cast calls touching after a way of a few sizes.
@@ -27,11 +27,11 @@ impl<S: Support> Support for Shifted<'_, S> {
         let (point, id) = self.shape.support(dir, start, cost);
         (point + self.by, id)
     }
-    fn start(&self, dir: DVec3) -> VertexId {
-        self.shape.start(dir)
+    fn start_vertex(&self, dir: DVec3) -> VertexId {
+        self.shape.start_vertex(dir)
     }
-    fn valid_start(&self, vertex: VertexId) -> VertexId {
-        self.shape.valid_start(vertex)
+    fn clamp_vertex(&self, vertex: VertexId) -> VertexId {
+        self.shape.clamp_vertex(vertex)
     }
     fn center(&self) -> DVec3 {
         self.shape.center() + self.by
@@ -81,11 +81,11 @@ impl<'a> Cast<'a> {
             pose: &self.pose,
         };
         let mut cost = Cost::default();
-        let start = cso.support(DVec3::X, cso.start(DVec3::X), &mut cost);
+        let start = cso.support(DVec3::X, cso.start_vertices(DVec3::X), &mut cost);
         match gjk::distance::<Voronoi, _, _>(&cso, &[start], f64::INFINITY, &mut cost) {
-            Outcome::Near(near) => near.distance,
-            Outcome::Overlap(_) => 0.0,
-            Outcome::Apart(_) => unreachable!("nothing is beyond infinity"),
+            Outcome::Disjoint(near) => near.distance,
+            Outcome::Overlapping(_) => 0.0,
+            Outcome::Separated(_) => unreachable!("nothing is beyond infinity"),
         }
     }
 
@@ -97,7 +97,7 @@ impl<'a> Cast<'a> {
             pose: &self.pose,
         };
         -normal.dot(
-            cso.support(normal, cso.start(normal), &mut Cost::default())
+            cso.support(normal, cso.start_vertices(normal), &mut Cost::default())
                 .w,
         )
     }
@@ -188,33 +188,33 @@ fn rebuilt(hull: &cases::Hull) -> Hull {
 }
 
 /// A random approach of `b` towards `a`: most hit, some pass by, some start inside.
-fn roll<'a>(dice: &mut Dice, shapes: [&'a Hull; 2]) -> Cast<'a> {
+fn roll<'a>(rng: &mut Rng, shapes: [&'a Hull; 2]) -> Cast<'a> {
     let size = shapes[0].radius() + shapes[1].radius();
-    let from = dice.direction() * size * dice.range(0.2, 3.0);
-    let aim = dice.direction() * size * dice.range(0.0, 0.9);
-    let target = if dice.range(0.0, 1.0) < 0.5 {
+    let from = rng.direction() * size * rng.range(0.2, 3.0);
+    let aim = rng.direction() * size * rng.range(0.0, 0.9);
+    let target = if rng.range(0.0, 1.0) < 0.5 {
         0.0
     } else {
-        size * dice.range(0.0, 0.2)
+        size * rng.range(0.0, 0.2)
     };
-    let pose = Pose::from_parts(from.as_vec3(), dice.rotation().as_quat());
+    let pose = Pose::from_parts(from.as_vec3(), rng.rotation().as_quat());
     Cast {
         shapes,
         pose: RelativePose::new(&pose).expect("a finite pose"),
-        velocity: (aim - from) * dice.range(0.1, 10.0),
+        velocity: (aim - from) * rng.range(0.1, 10.0),
         target,
     }
 }
 
-fn judge_rolls<'a>(casts: usize, seed: u128, mut pair: impl FnMut(&mut Dice) -> [&'a Hull; 2]) {
+fn judge_rolls<'a>(casts: usize, seed: u128, mut pair: impl FnMut(&mut Rng) -> [&'a Hull; 2]) {
     let mut report = Report::new("casts");
-    let mut dice = Dice::new(seed);
+    let mut rng = Rng::new(seed);
     let mut kinds = std::collections::BTreeMap::<_, usize>::new();
     for i in 0..casts {
-        let shapes = pair(&mut dice);
-        let cast = roll(&mut dice, shapes);
+        let shapes = pair(&mut rng);
+        let cast = roll(&mut rng, shapes);
         let size = shapes[0].radius() + shapes[1].radius();
-        let way = size * dice.range(1.0, 6.0);
+        let way = size * rng.range(1.0, 6.0);
         let (kind, finding) = cast.judge(way / cast.velocity.length(), size);
         *kinds.entry(kind).or_default() += 1;
         report.add(kind, &format!("cast {i}"), finding);
@@ -225,14 +225,14 @@ fn judge_rolls<'a>(casts: usize, seed: u128, mut pair: impl FnMut(&mut Dice) -> 
 
 #[test]
 fn random_hulls_touch_when_bisection_says() {
-    let mut dice = Dice::new(2004);
+    let mut rng = Rng::new(2004);
     let hulls: Vec<Hull> = [4, 8, 20, 60, 200]
         .into_iter()
         .flat_map(|n| [n, n])
-        .map(|n| rebuilt(&dice.hull(n, 1.0)))
+        .map(|n| rebuilt(&rng.hull(n, 1.0)))
         .collect();
-    judge_rolls(1500, 1, |dice| {
-        [0, 1].map(|_| &hulls[dice.count(0, hulls.len() - 1)])
+    judge_rolls(1500, 1, |rng| {
+        [0, 1].map(|_| &hulls[rng.count(0, hulls.len() - 1)])
     });
 }
 
@@ -241,8 +241,8 @@ fn published_hulls_touch_when_bisection_says() {
     let mut names: Vec<_> = hulls().keys().collect();
     names.sort();
     let built: Vec<Hull> = names.iter().map(|n| rebuilt(&hulls()[*n])).collect();
-    judge_rolls(1500, 2, |dice| {
-        [0, 1].map(|_| &built[dice.count(0, built.len() - 1)])
+    judge_rolls(1500, 2, |rng| {
+        [0, 1].map(|_| &built[rng.count(0, built.len() - 1)])
     });
 }
 
@@ -362,11 +362,11 @@ fn input_that_is_not_finite_ends_soon() {
 
 #[test]
 fn the_distance_subalgorithms_agree() {
-    let mut dice = Dice::new(7);
-    let hulls = [30, 80].map(|n| rebuilt(&dice.hull(n, 1.0)));
+    let mut rng = Rng::new(7);
+    let hulls = [30, 80].map(|n| rebuilt(&rng.hull(n, 1.0)));
     let mut hits = 0;
     for _ in 0..200 {
-        let cast = roll(&mut dice, [&hulls[0], &hulls[1]]);
+        let cast = roll(&mut rng, [&hulls[0], &hulls[1]]);
         let (cso, velocity, target) = (cast.cso(), cast.velocity, cast.target);
         let mut cost = Cost::default();
         let answers = [

@@ -3,19 +3,19 @@
 
 use glam::{DQuat, DVec3};
 use isa_gjk::Hull;
-use isa_gjk::epa::{EpaScratch, Shells, penetration};
+use isa_gjk::epa::{EpaScratch, PolytopeCache, penetration};
 use isa_gjk::pose::RelativePose;
-use isa_gjk::query::{Answer, Memory, Query};
+use isa_gjk::query::{Answer, PairMemory, Query};
 use isa_gjk::stats::{Cost, Stage};
 use isa_gjk::support::Cso;
 use parry3d::math::Pose;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 
 /// Of the smaller radius: what a known depth may be too large by.
 const TOLERANCE: f64 = 2.1e-6;
 
-fn hull(vertices: usize, dice: &mut Dice) -> Hull {
-    let points: Vec<_> = (0..vertices).map(|_| dice.direction().as_vec3()).collect();
+fn hull(vertices: usize, rng: &mut Rng) -> Hull {
+    let points: Vec<_> = (0..vertices).map(|_| rng.direction().as_vec3()).collect();
     Hull::from_points(&points).expect("points on a sphere")
 }
 
@@ -28,11 +28,11 @@ struct Motion {
 }
 
 impl Motion {
-    fn new(dice: &mut Dice, depth: f64, speed: f64) -> Self {
+    fn new(rng: &mut Rng, depth: f64, speed: f64) -> Self {
         Self {
-            from: dice.direction() * (2.0 - depth),
-            velocity: dice.direction() * 0.002 * speed,
-            axis: dice.direction(),
+            from: rng.direction() * (2.0 - depth),
+            velocity: rng.direction() * 0.002 * speed,
+            axis: rng.direction(),
             speed: speed * 0.5_f64.to_radians(),
         }
     }
@@ -48,13 +48,13 @@ impl Motion {
 fn ask(
     hulls: &[Hull; 2],
     pose: &RelativePose,
-    memory: &Memory,
-    shells: Option<(&mut Shells, u64)>,
+    memory: &PairMemory,
+    polytope_cache: Option<(&mut PolytopeCache, u64)>,
 ) -> (Answer, Stage) {
     let query = Query {
         cso: &cso(hulls, pose),
         max_distance: 0.01,
-        shells,
+        polytope_cache,
         scratch: &mut EpaScratch::default(),
         cost: &mut Cost::default(),
     }
@@ -70,32 +70,32 @@ fn cso<'a>(hulls: &'a [Hull; 2], pose: &'a RelativePose) -> Cso<'a, Hull, Hull> 
     }
 }
 
-/// Along slow and fast motions, with a shell of the pair's own, and with one that many pairs write
+/// Along slow and fast motions, with a cached polytope of the pair's own, and with one that many pairs write
 /// to in turn.
 #[test]
-fn no_bit_of_an_answer_depends_on_the_shell() {
-    let mut dice = Dice::new(71);
+fn no_bit_of_an_answer_depends_on_the_cache() {
+    let mut rng = Rng::new(71);
     let mut proved = [0; 2];
-    let mut shells = Shells::default();
+    let mut cache = PolytopeCache::default();
     const SHARED: u64 = u64::MAX;
     for round in 0..120 {
-        let hulls = [(); 2].map(|()| hull([8, 20, 90, 400][round % 4], &mut dice));
+        let hulls = [(); 2].map(|()| hull([8, 20, 90, 400][round % 4], &mut rng));
         let depth = [0.01, 0.1, 0.4, 1.2][round / 4 % 4];
-        let motion = Motion::new(&mut dice, depth, [0.1, 1.0, 10.0][round % 3]);
-        let mut memory = Memory::None;
+        let motion = Motion::new(&mut rng, depth, [0.1, 1.0, 10.0][round % 3]);
+        let mut memory = PairMemory::None;
         for frame in 0..40 {
             let pose = motion.at(frame);
             let (answer, stage) = ask(&hulls, &pose, &memory, None);
-            assert_ne!(stage, Stage::Shell, "there is none");
+            assert_ne!(stage, Stage::CachedPolytope, "there is none");
             for (key, proved) in [round as u64, SHARED].into_iter().zip(&mut proved) {
-                let (other, stage) = ask(&hulls, &pose, &memory, Some((&mut shells, key)));
+                let (other, stage) = ask(&hulls, &pose, &memory, Some((&mut cache, key)));
                 // Debug prints all digits.
                 assert_eq!(
                     format!("{answer:?}"),
                     format!("{other:?}"),
                     "{round}/{frame}"
                 );
-                *proved += usize::from(stage == Stage::Shell);
+                *proved += usize::from(stage == Stage::CachedPolytope);
             }
             memory = answer.memory();
         }
@@ -106,16 +106,16 @@ fn no_bit_of_an_answer_depends_on_the_shell() {
     );
 }
 
-/// Shells of other poses and other pairs, also of such as have vertices that this one has not.
+/// Polytopes of other poses and other pairs, also of such as have vertices that this one has not.
 #[test]
-fn what_a_shell_proves_is_true() {
-    let mut dice = Dice::new(72);
-    let mut shells = Shells::default();
+fn what_a_cached_polytope_proves_is_true() {
+    let mut rng = Rng::new(72);
+    let mut cache = PolytopeCache::default();
     let mut outcomes = [0; 2];
     let (mut overlapping, mut own) = (0, 0);
     for round in 0..4_000 {
-        let hulls = [(); 2].map(|()| hull([5, 12, 40, 120][round % 4], &mut dice));
-        let motion = Motion::new(&mut dice, [0.3, 0.7, 1.4][round % 3], 1.0);
+        let hulls = [(); 2].map(|()| hull([5, 12, 40, 120][round % 4], &mut rng));
+        let motion = Motion::new(&mut rng, [0.3, 0.7, 1.4][round % 3], 1.0);
         let scratch = &mut EpaScratch::default();
         let cost = &mut Cost::default();
         for frame in [0, 3, 30] {
@@ -126,18 +126,18 @@ fn what_a_shell_proves_is_true() {
                 panic!("finite solids");
             };
             for claimed in [0.6, 0.95, 1.0, 1.0 + 1e-5, 1.1].map(|share| share * true_depth) {
-                let tolerance = TOLERANCE * cso.smaller_radius();
-                let proves = shells.prove(0, &cso, claimed, scratch, cost);
+                let tolerance = TOLERANCE * cso.min_radius();
+                let proves = cache.proves_depth(0, &cso, claimed, scratch, cost);
                 assert!(!proves || true_depth >= claimed - tolerance, "{round}");
                 outcomes[usize::from(proves)] += usize::from(true_depth > 0.0);
             }
             if frame == 0 {
                 penetration(&cso, &[], scratch, cost);
-                shells.keep(0, &cso, scratch);
-                let radius = cso.smaller_radius();
-                own += usize::from(shells.prove(0, &cso, true_depth, scratch, cost));
+                cache.store(0, &cso, scratch);
+                let radius = cso.min_radius();
+                own += usize::from(cache.proves_depth(0, &cso, true_depth, scratch, cost));
                 overlapping += usize::from(true_depth > 0.0);
-                assert!(!shells.prove(0, &cso, true_depth + 1e-5 * radius, scratch, cost));
+                assert!(!cache.proves_depth(0, &cso, true_depth + 1e-5 * radius, scratch, cost));
             }
         }
     }
@@ -150,12 +150,18 @@ fn what_a_shell_proves_is_true() {
 
 #[test]
 fn an_empty_shell_proves_nothing() {
-    let mut dice = Dice::new(73);
-    let hulls = [(); 2].map(|()| hull(20, &mut dice));
-    let pose = Motion::new(&mut dice, 1.0, 0.0).at(0);
+    let mut rng = Rng::new(73);
+    let hulls = [(); 2].map(|()| hull(20, &mut rng));
+    let pose = Motion::new(&mut rng, 1.0, 0.0).at(0);
     for depth in [-1.0, 0.0, 1e-9, 0.5] {
         let (scratch, cost) = (&mut EpaScratch::default(), &mut Cost::default());
-        assert!(!Shells::default().prove(0, &cso(&hulls, &pose), depth, scratch, cost));
+        assert!(!PolytopeCache::default().proves_depth(
+            0,
+            &cso(&hulls, &pose),
+            depth,
+            scratch,
+            cost
+        ));
     }
 }
 
@@ -164,22 +170,22 @@ fn an_empty_shell_proves_nothing() {
 #[test]
 fn pairs_that_share_a_place_do_not_drive_each_other_out() {
     const PAIRS: u64 = 4_096;
-    let mut dice = Dice::new(74);
-    let hulls = [(); 2].map(|()| hull(12, &mut dice));
-    let pose = Motion::new(&mut dice, 1.7, 0.0).at(0);
+    let mut rng = Rng::new(74);
+    let hulls = [(); 2].map(|()| hull(12, &mut rng));
+    let pose = Motion::new(&mut rng, 1.7, 0.0).at(0);
     let cso = cso(&hulls, &pose);
     let (scratch, cost) = (&mut EpaScratch::default(), &mut Cost::default());
     let found = penetration(&cso, &[], scratch, cost).expect("finite solids");
     assert!(found.depth > 0.1, "they overlap");
     let expanded = scratch.clone();
-    let mut shells = Shells::default();
+    let mut cache = PolytopeCache::default();
     let mut frame = |pairs: std::ops::Range<u64>| {
         let mut proved = Vec::new();
         for key in pairs {
-            if shells.prove(key, &cso, found.depth, scratch, cost) {
+            if cache.proves_depth(key, &cso, found.depth, scratch, cost) {
                 proved.push(key);
             } else {
-                shells.keep(key, &cso, &expanded);
+                cache.store(key, &cso, &expanded);
             }
         }
         proved

@@ -14,7 +14,7 @@ use isa_gjk::simplex::Voronoi;
 use isa_gjk::stats::Cost;
 use isa_gjk::support::{Cso, Support};
 use parry3d::math::Pose;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 
 fn pose(translation: DVec3, rotation: DQuat) -> RelativePose {
     let pose = Pose::from_parts(translation.as_vec3(), rotation.as_quat());
@@ -22,28 +22,30 @@ fn pose(translation: DVec3, rotation: DQuat) -> RelativePose {
 }
 
 fn support(shape: &impl Support, dir: DVec3) -> DVec3 {
-    shape.support(dir, shape.start(dir), &mut Cost::default()).0
+    shape
+        .support(dir, shape.start_vertex(dir), &mut Cost::default())
+        .0
 }
 
 /// No `point` of the shape lies beyond its supports, and these are of the shape.
 fn check_support<S: Support>(
     shape: &S,
-    mut point: impl FnMut(&mut Dice) -> DVec3,
+    mut point: impl FnMut(&mut Rng) -> DVec3,
     holds: impl Fn(DVec3) -> bool,
 ) {
-    let mut dice = Dice::new(5);
+    let mut rng = Rng::new(5);
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
     for i in 0..2000 {
         let dir = if i < 6 {
             axes[i % 3] * if i < 3 { 1.0 } else { -1.0 }
         } else {
-            dice.direction() * 10_f64.powf(dice.range(-200.0, 200.0))
+            rng.direction() * 10_f64.powf(rng.range(-200.0, 200.0))
         };
         let s = support(shape, dir);
         assert!(holds(s), "{s} for {dir}");
         let tolerance = 1.0e-15 * shape.radius() * dir.length();
         for _ in 0..50 {
-            let p = point(&mut dice);
+            let p = point(&mut rng);
             assert!(holds(p), "the test's own point {p}");
             assert!(dir.dot(p) <= dir.dot(s) + tolerance, "{p} beyond {s}");
             assert!(p.distance(shape.center()) <= shape.radius() * (1.0 + 1.0e-15));
@@ -53,14 +55,14 @@ fn check_support<S: Support>(
 
 #[test]
 fn supports_are_extreme_points() {
-    let on_disc = |dice: &mut Dice, r: f64| {
-        DVec2::from_angle(dice.range(0.0, TAU)) * r * dice.range(0.0, 1.0).sqrt()
+    let on_disc = |rng: &mut Rng, r: f64| {
+        DVec2::from_angle(rng.range(0.0, TAU)) * r * rng.range(0.0, 1.0).sqrt()
     };
     let off_axis = |p: DVec3| p.x.hypot(p.z);
     check_support(
         &Cylinder::new(0.7, 0.4),
-        |dice| {
-            let (d, y) = (on_disc(dice, 0.4), dice.range(-0.7, 0.7));
+        |rng| {
+            let (d, y) = (on_disc(rng, 0.4), rng.range(-0.7, 0.7));
             DVec3::new(d.x, y, d.y)
         },
         |p| p.y.abs() <= 0.7 && off_axis(p) <= 0.4 * (1.0 + 1.0e-15),
@@ -68,9 +70,9 @@ fn supports_are_extreme_points() {
     for (half_height, radius) in [(0.7, 0.4), (0.1, 0.9), (2.0, 0.01)] {
         check_support(
             &Cone::new(half_height, radius),
-            |dice| {
-                let up = dice.range(0.0, 1.0);
-                let d = on_disc(dice, radius * (1.0 - up));
+            |rng| {
+                let up = rng.range(0.0, 1.0);
+                let d = on_disc(rng, radius * (1.0 - up));
                 DVec3::new(d.x, (2.0 * up - 1.0) * half_height, d.y)
             },
             |p| {
@@ -82,7 +84,7 @@ fn supports_are_extreme_points() {
     let ends = [DVec3::new(0.1, 0.2, 0.3), DVec3::new(-0.4, 0.5, 0.9)];
     check_support(
         &Segment::new(ends, 0.25),
-        |dice| ends[0].lerp(ends[1], dice.range(0.0, 1.0)),
+        |rng| ends[0].lerp(ends[1], rng.range(0.0, 1.0)),
         |p| (p.distance(ends[0]) + p.distance(ends[1]) - ends[0].distance(ends[1])) < 1.0e-15,
     );
 }
@@ -104,9 +106,9 @@ fn closest<A: Support, B: Support>(a: &A, b: &B, pose: &RelativePose) -> Closest
         pose,
     };
     let mut cost = Cost::default();
-    let start = cso.support(DVec3::X, cso.start(DVec3::X), &mut cost);
+    let start = cso.support(DVec3::X, cso.start_vertices(DVec3::X), &mut cost);
     match gjk::distance::<Voronoi, _, _>(&cso, &[start], f64::INFINITY, &mut cost) {
-        Outcome::Near(near) => {
+        Outcome::Disjoint(near) => {
             let gap = near.distance - near.lower_bound;
             assert!(gap <= 1.0e-8 * cso.size(), "uncertain by {gap:e}");
             assert!(cost.iterations < 100, "{} iterations", cost.iterations);
@@ -122,22 +124,22 @@ fn assert_near(found: f64, expected: f64, what: impl std::fmt::Debug) {
 }
 
 /// A random place whose coordinates are f32's, as poses are.
-fn place(dice: &mut Dice, reach: f64) -> DVec3 {
-    (dice.direction() * dice.range(0.0, reach))
+fn place(rng: &mut Rng, reach: f64) -> DVec3 {
+    (rng.direction() * rng.range(0.0, reach))
         .as_vec3()
         .as_dvec3()
 }
 
 #[test]
 fn balls_are_apart_by_their_centres_less_their_radii() {
-    let mut dice = Dice::new(1);
+    let mut rng = Rng::new(1);
     let (a, b) = (Ball::new(0.5), Ball::new(0.25));
     for _ in 0..500 {
-        let at = place(&mut dice, 3.0);
-        let near = closest(&a, &b, &pose(at, dice.rotation()));
+        let at = place(&mut rng, 3.0);
+        let near = closest(&a, &b, &pose(at, rng.rotation()));
         // Also where the balls overlap: the borders know the depth.
         assert_near(
-            near.distance - a.border() - b.border(),
+            near.distance - a.border_radius() - b.border_radius(),
             at.length() - 0.75,
             at,
         );
@@ -147,16 +149,16 @@ fn balls_are_apart_by_their_centres_less_their_radii() {
 
 #[test]
 fn a_ball_is_as_far_from_a_box_as_its_centre() {
-    let mut dice = Dice::new(2);
+    let mut rng = Rng::new(2);
     let extents = DVec3::new(0.5, 1.0, 0.25);
     let (cuboid, ball) = (CuboidPolytope::new(extents), Ball::new(0.3));
     let mut checked = 0;
     for _ in 0..2000 {
-        let at = place(&mut dice, 2.0);
+        let at = place(&mut rng, 2.0);
         let expected = (at.abs() - extents).max(DVec3::ZERO).length();
         if expected > 1.0e-6 {
             checked += 1;
-            let near = closest(&cuboid, &ball, &pose(at, dice.rotation()));
+            let near = closest(&cuboid, &ball, &pose(at, rng.rotation()));
             assert_near(near.distance, expected, at);
         }
     }
@@ -186,11 +188,11 @@ fn between_segments(p: [DVec3; 2], q: [DVec3; 2]) -> f64 {
 
 #[test]
 fn capsules_are_as_far_apart_as_their_segments() {
-    let mut dice = Dice::new(3);
+    let mut rng = Rng::new(3);
     for _ in 0..3000 {
-        let [p, q] = [(); 2].map(|()| [place(&mut dice, 1.0), place(&mut dice, 1.0)]);
-        let turn = dice.rotation();
-        let pose = pose(place(&mut dice, 2.0), turn);
+        let [p, q] = [(); 2].map(|()| [place(&mut rng, 1.0), place(&mut rng, 1.0)]);
+        let turn = rng.rotation();
+        let pose = pose(place(&mut rng, 2.0), turn);
         let expected = between_segments(p, q.map(|end| pose.point_to_1(end)));
         if expected > 1.0e-6 {
             let near = closest(&Segment::new(p, 0.1), &Segment::new(q, 0.2), &pose);
@@ -201,7 +203,7 @@ fn capsules_are_as_far_apart_as_their_segments() {
 
 #[test]
 fn a_point_sees_cylinder_and_cone_in_profile() {
-    let mut dice = Dice::new(4);
+    let mut rng = Rng::new(4);
     let (half_height, radius) = (0.6, 0.35);
     let (cylinder, cone) = (
         Cylinder::new(half_height, radius),
@@ -213,7 +215,7 @@ fn a_point_sees_cylinder_and_cone_in_profile() {
     ];
     let base = [flank[0], DVec3::new(0.0, -half_height, 0.0)];
     for _ in 0..3000 {
-        let at = place(&mut dice, 2.0);
+        let at = place(&mut rng, 2.0);
         let profile = DVec3::new(at.x.hypot(at.z), at.y, 0.0);
         let pose = pose(at, DQuat::IDENTITY);
         let beyond = (profile - DVec3::new(radius, half_height, 0.0)).max(DVec3::ZERO);
@@ -279,7 +281,12 @@ fn sampled_separation<A: Support, B: Support>(cso: &Cso<'_, A, B>) -> f64 {
     const SAMPLES: usize = 20_000;
     const REFINED: usize = 40;
     let golden = TAU * 0.5 * (5.0_f64.sqrt() - 1.0);
-    let separation = |n: DVec3| -n.dot(cso.support(n, cso.start(n), &mut Cost::default()).w);
+    let separation = |n: DVec3| {
+        -n.dot(
+            cso.support(n, cso.start_vertices(n), &mut Cost::default())
+                .w,
+        )
+    };
     let mut samples: Vec<(f64, DVec3)> = (0..SAMPLES)
         .map(|i| {
             let z = 1.0 - (2 * i + 1) as f64 / SAMPLES as f64;
@@ -291,12 +298,12 @@ fn sampled_separation<A: Support, B: Support>(cso: &Cso<'_, A, B>) -> f64 {
         .collect();
     samples.sort_by(|a, b| b.0.total_cmp(&a.0));
     // Random steps: on the ridges of `s`, which is not smooth, fixed ones would get stuck.
-    let mut dice = Dice::new(6);
+    let mut rng = Rng::new(6);
     let mut refine = |&(mut best, mut n): &(f64, DVec3)| {
         let mut step = 0.02;
         while step > 1.0e-9 {
             let better = (0..32)
-                .map(|_| (n + dice.direction() * step).normalize())
+                .map(|_| (n + rng.direction() * step).normalize())
                 .map(|n| (separation(n), n))
                 .max_by(|a, b| a.0.total_cmp(&b.0));
             match better {
@@ -322,8 +329,8 @@ struct Worst {
 }
 
 fn depth<A: Support, B: Support>(cso: &Cso<'_, A, B>, cost: &mut Cost) -> Option<Penetration> {
-    let start = cso.support(DVec3::X, cso.start(DVec3::X), cost);
-    let Outcome::Overlap(simplex) =
+    let start = cso.support(DVec3::X, cso.start_vertices(DVec3::X), cost);
+    let Outcome::Overlapping(simplex) =
         gjk::distance::<Voronoi, _, _>(cso, &[start], f64::INFINITY, cost)
     else {
         return None;
@@ -334,7 +341,7 @@ fn depth<A: Support, B: Support>(cso: &Cso<'_, A, B>, cost: &mut Cost) -> Option
 }
 
 fn check_depths<A: Support, B: Support>(name: &str, a: &A, b: &B, seed: u128) {
-    let mut dice = Dice::new(seed);
+    let mut rng = Rng::new(seed);
     let mut worst = Worst::default();
     let mut checked = 0;
     let reach = a.radius() + b.radius();
@@ -343,8 +350,8 @@ fn check_depths<A: Support, B: Support>(name: &str, a: &A, b: &B, seed: u128) {
         let turn = [DQuat::IDENTITY, DQuat::from_rotation_x(FRAC_PI_2)]
             .get(i % 6)
             .copied()
-            .unwrap_or_else(|| dice.rotation());
-        let pose = pose(place(&mut dice, if i < 3 { 0.0 } else { reach }), turn);
+            .unwrap_or_else(|| rng.rotation());
+        let pose = pose(place(&mut rng, if i < 3 { 0.0 } else { reach }), turn);
         let cso = Cso {
             shape_1: a,
             shape_2: b,
@@ -412,7 +419,7 @@ fn impact(
     b: &impl Support,
     from: DVec3,
     velocity: DVec3,
-    border: f64,
+    border_radius: f64,
 ) -> RayCast {
     let pose = pose(from, DQuat::IDENTITY);
     let cso = Cso {
@@ -421,7 +428,7 @@ fn impact(
         pose: &pose,
     };
     let mut cost = Cost::default();
-    let answer = ray_cast::<Voronoi, _, _>(&cso, velocity, f64::INFINITY, border, &mut cost);
+    let answer = ray_cast::<Voronoi, _, _>(&cso, velocity, f64::INFINITY, border_radius, &mut cost);
     assert_eq!(cost.fallbacks, 0, "{} iterations", cost.iterations);
     answer
 }

@@ -12,7 +12,7 @@ use std::thread;
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::query::QueryDispatcher;
 use rapier3d::prelude::*;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 use testkit::memory::cold_manifold;
 
 struct Counting;
@@ -49,9 +49,9 @@ fn take_turn() -> MutexGuard<'static, ()> {
 }
 
 /// A hull of points on a sphere.
-fn round(dice: &mut Dice, vertices: usize, radius: Real) -> SharedShape {
+fn round(rng: &mut Rng, vertices: usize, radius: Real) -> SharedShape {
     let points: Vec<Vector> = (0..vertices)
-        .map(|_| dice.direction().as_vec3() * radius)
+        .map(|_| rng.direction().as_vec3() * radius)
         .collect();
     SharedShape::convex_hull(&points).expect("a hull")
 }
@@ -65,17 +65,17 @@ fn touch(dispatcher: &IsaGjkDispatcher, shapes: [&SharedShape; 2]) {
 
 /// Hulls that come, are asked about and go, among allocations of other sizes; the most memory that
 /// was in use meanwhile beyond what was in use before.
-fn churn(dispatcher: &IsaGjkDispatcher, dice: &mut Dice, hulls: usize, live: usize) -> usize {
-    let stays = round(dice, 100, 0.5);
+fn churn(dispatcher: &IsaGjkDispatcher, rng: &mut Rng, hulls: usize, live: usize) -> usize {
+    let stays = round(rng, 100, 0.5);
     let mut ring = VecDeque::new();
     let (before, mut most) = (bytes(), 0);
     for _ in 0..hulls {
-        let vertices = dice.count(50, 150);
-        let comes = round(dice, vertices, 0.5);
+        let vertices = rng.count(50, 150);
+        let comes = round(rng, vertices, 0.5);
         for _ in 0..3 {
             touch(dispatcher, [&comes, &stays]);
         }
-        ring.push_back((comes, vec![0_u8; dice.count(16, 2000)]));
+        ring.push_back((comes, vec![0_u8; rng.count(16, 2000)]));
         if ring.len() > live {
             ring.pop_front();
         }
@@ -88,9 +88,9 @@ fn churn(dispatcher: &IsaGjkDispatcher, dice: &mut Dice, hulls: usize, live: usi
 fn hulls_that_came_and_went_take_no_memory() {
     let _turn = take_turn();
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(131);
+    let mut rng = Rng::new(131);
     let before = bytes();
-    let most = churn(&dispatcher, &mut dice, 5_000, 30);
+    let most = churn(&dispatcher, &mut rng, 5_000, 30);
     assert!(most < 48 * MIB, "{} MiB at most", most / MIB);
     dispatcher.trim();
     let stays = bytes().saturating_sub(before);
@@ -102,15 +102,15 @@ fn hulls_that_came_and_went_take_no_memory() {
 fn debris_of_a_world_takes_no_memory() {
     let _turn = take_turn();
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(132);
+    let mut rng = Rng::new(132);
     let mut world = PhysicsWorld {
         narrow_phase: NarrowPhase::with_query_dispatcher(dispatcher),
         ..PhysicsWorld::default()
     };
-    world.insert_collider(ColliderBuilder::new(round(&mut dice, 60, 3.0)), None);
+    world.insert_collider(ColliderBuilder::new(round(&mut rng, 60, 3.0)), None);
     let (before, mut most) = (bytes(), 0);
     for _ in 0..4_500 {
-        let shape = round(&mut dice, 100, 0.4);
+        let shape = round(&mut rng, 100, 0.4);
         let body = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 3.2, 0.0));
         let (body, _) = world.insert(body, ColliderBuilder::new(shape));
         world.step();
@@ -129,8 +129,8 @@ fn trimming_reaches_other_threads_and_changes_no_answer() {
     let other = thread::spawn({
         let dispatcher = dispatcher.clone();
         move || {
-            let mut dice = Dice::new(133);
-            let shapes: Vec<_> = (0..200).map(|_| round(&mut dice, 100, 0.5)).collect();
+            let mut rng = Rng::new(133);
+            let shapes: Vec<_> = (0..200).map(|_| round(&mut rng, 100, 0.5)).collect();
             for few in orders {
                 let shapes = if few { &shapes[..2] } else { &shapes };
                 let pose = Pose::translation(0.6, 0.5, 0.4);
@@ -168,9 +168,9 @@ fn trimming_reaches_other_threads_and_changes_no_answer() {
 fn many_hulls_in_use_are_prepared_once() {
     let _turn = take_turn();
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(134);
+    let mut rng = Rng::new(134);
     let ball = SharedShape::ball(0.5);
-    let hulls: Vec<_> = (0..450).map(|_| round(&mut dice, 1000, 0.5)).collect();
+    let hulls: Vec<_> = (0..450).map(|_| round(&mut rng, 1000, 0.5)).collect();
     let before = bytes();
     let ask_all = || {
         let calls = CALLS.load(Relaxed);
@@ -194,9 +194,9 @@ fn many_hulls_in_use_are_prepared_once() {
 fn what_was_dropped_is_answered_as_before() {
     let _turn = take_turn();
     let dispatcher = IsaGjkDispatcher::default();
-    let mut dice = Dice::new(135);
+    let mut rng = Rng::new(135);
     let pairs: Vec<_> = (0..50)
-        .map(|_| [(); 2].map(|()| round(&mut dice, 40, 0.5)))
+        .map(|_| [(); 2].map(|()| round(&mut rng, 40, 0.5)))
         .collect();
     let answers = || {
         let pose = Pose::translation(0.6, 0.5, 0.4);
@@ -205,7 +205,7 @@ fn what_was_dropped_is_answered_as_before() {
         format!("{:?}", pairs.iter().map(answer).collect::<Vec<_>>())
     };
     let before = answers();
-    churn(&dispatcher, &mut dice, 5_000, 30);
+    churn(&dispatcher, &mut rng, 5_000, 30);
     let calls = CALLS.load(Relaxed);
     assert_eq!(before, answers());
     assert!(CALLS.load(Relaxed) - calls > 50 * 10, "nothing was dropped");

@@ -6,7 +6,7 @@
 
 use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::*;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 
 fn plate() -> SharedShape {
     let corners: Vec<Vector> = (0..8)
@@ -20,9 +20,9 @@ fn plate() -> SharedShape {
 
 #[test]
 fn a_fast_hull_does_not_pass_a_thin_plate() {
-    let mut dice = Dice::new(9);
+    let mut rng = Rng::new(9);
     for vertices in [8, 16, 30, 250] {
-        let shape = dice.hull(vertices, 0.9).shape;
+        let shape = rng.hull(vertices, 0.9).shape;
         let mut world = PhysicsWorld {
             narrow_phase: NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default()),
             ..PhysicsWorld::default()

@@ -2,7 +2,7 @@
 
 use isa_gjk::{HullShape, IsaGjkDispatcher};
 use rapier3d::prelude::*;
-use testkit::generate::{Dice, prepared};
+use testkit::generate::{Rng, prepared};
 
 const PILE: usize = 36;
 
@@ -19,14 +19,14 @@ fn pile(shapes: &[SharedShape], count: usize) -> PhysicsWorld {
         let wall = ColliderBuilder::cuboid(half.x, half.y, half.z);
         world.insert_collider(wall.translation(Vector::new(2.5 * x, 4.0, 2.5 * z)), None);
     }
-    let mut dice = Dice::new(8);
+    let mut rng = Rng::new(8);
     for i in 0..count {
         let cell = Vector::new(
             (i % 3) as Real - 1.0,
             0.6 + (i / 9) as Real,
             (i / 3 % 3) as Real - 1.0,
         );
-        let turn = dice.direction().as_vec3();
+        let turn = rng.direction().as_vec3();
         let body = RigidBodyBuilder::dynamic().pose(Pose::new(cell * 1.1, turn));
         world.insert(body, ColliderBuilder::new(shapes[i % shapes.len()].clone()));
     }
@@ -34,9 +34,9 @@ fn pile(shapes: &[SharedShape], count: usize) -> PhysicsWorld {
 }
 
 fn plain_hulls() -> Vec<SharedShape> {
-    let mut dice = Dice::new(9);
+    let mut rng = Rng::new(9);
     [8, 16, 30, 250]
-        .map(|corners| dice.hull(corners, 0.9).shape)
+        .map(|corners| rng.hull(corners, 0.9).shape)
         .into()
 }
 

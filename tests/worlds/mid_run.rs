@@ -9,7 +9,7 @@ use std::thread;
 use isa_gjk::{HullShape, IsaGjkDispatcher};
 use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::prelude::*;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 use testkit::world::{Ground, check_places, deepest, mixed};
 
 const BODIES: usize = 28;
@@ -148,8 +148,8 @@ fn points_address(shape: &SharedShape) -> usize {
 /// New hulls take the places of old ones, with as many corners, at the addresses that those left.
 #[test]
 fn replaced_shapes_are_not_answered_for_the_dead() {
-    let mut dice = Dice::new(71);
-    let mut hull = || dice.hull(20, 1.0).shape;
+    let mut rng = Rng::new(71);
+    let mut hull = || rng.hull(20, 1.0).shape;
     let mut two = Two::new([hull(), hull()]);
     let (mut seen, mut reused, mut touching) = (HashSet::new(), 0, 0);
     for turn in 0..200 {
@@ -168,11 +168,11 @@ fn replaced_shapes_are_not_answered_for_the_dead() {
 /// A prepared hull in the place of a plain one, scaled, and shared with another collider.
 #[test]
 fn shapes_change_kind_and_size() {
-    let mut dice = Dice::new(72);
-    let mut two = Two::new([(); 2].map(|()| dice.hull(30, 1.0).shape));
+    let mut rng = Rng::new(72);
+    let mut two = Two::new([(); 2].map(|()| rng.hull(30, 1.0).shape));
     let mut touching = 0;
     for turn in 0..120 {
-        let hull = dice.hull(30, 1.0).shape;
+        let hull = rng.hull(30, 1.0).shape;
         let polyhedron = hull.as_convex_polyhedron().expect("a hull").clone();
         let prepared = HullShape::try_from(polyhedron.clone()).expect("a solid");
         let collider = two.collider(0);
@@ -198,10 +198,10 @@ fn shapes_change_kind_and_size() {
 /// solver graph (which checks itself in builds like this one) forgets them.
 #[test]
 fn parts_leave_no_contacts_behind() {
-    let mut dice = Dice::new(73);
-    let mut two = Two::new([(); 2].map(|()| dice.hull(30, 1.0).shape));
+    let mut rng = Rng::new(73);
+    let mut two = Two::new([(); 2].map(|()| rng.hull(30, 1.0).shape));
     for turn in 0..60 {
-        let [whole, left, right] = [(); 3].map(|()| dice.hull(20, 1.0).shape);
+        let [whole, left, right] = [(); 3].map(|()| rng.hull(20, 1.0).shape);
         let aside = |x: Real| Pose::translation(x, 0.0, 0.0);
         let parts = vec![(aside(-0.4), left), (aside(0.4), right)];
         let shape = [whole, SharedShape::compound(parts)][turn % 2].clone();

@@ -7,7 +7,7 @@ use isa_gjk::{HullShape, IsaGjkDispatcher};
 use parry3d::query::QueryDispatcher;
 use parry3d::shape::{Compound, CompoundFlags, ConvexPolyhedron};
 use rapier3d::prelude::*;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 use testkit::world::{Ground, check_places, deepest, mixed, ours};
 
 fn is_prepared(shape: &SharedShape) -> bool {
@@ -47,8 +47,8 @@ fn assert_alike(plain: &SharedShape, prepared: &SharedShape) {
 
 #[test]
 fn hulls_are_prepared_once() {
-    let mut dice = Dice::new(101);
-    let [hull, other] = [(); 2].map(|()| dice.hull(40, 1.0).shape);
+    let mut rng = Rng::new(101);
+    let [hull, other] = [(); 2].map(|()| rng.hull(40, 1.0).shape);
     let mut shapes = PreparedShapes::default();
     let prepared = shapes.prepare(&hull);
     assert!(is_prepared(&prepared));
@@ -62,8 +62,8 @@ fn hulls_are_prepared_once() {
 /// As the hulls of a loaded world are, in which no collider shares its shape.
 #[test]
 fn equal_hulls_are_prepared_once() {
-    let mut dice = Dice::new(105);
-    let hull = dice.hull(40, 1.0).shape;
+    let mut rng = Rng::new(105);
+    let hull = rng.hull(40, 1.0).shape;
     let polyhedron = hull.as_convex_polyhedron().expect("a hull");
     let mut shapes = PreparedShapes::default();
     let prepared = shapes.prepare(&hull);
@@ -80,10 +80,10 @@ fn equal_hulls_are_prepared_once() {
 /// A shape that is dropped leaves its address to none that would be taken for it.
 #[test]
 fn dropped_shapes_are_not_mistaken() {
-    let mut dice = Dice::new(102);
+    let mut rng = Rng::new(102);
     let mut shapes = PreparedShapes::default();
     for _ in 0..50 {
-        let hull = dice.hull(20, 1.0).shape;
+        let hull = rng.hull(20, 1.0).shape;
         let prepared = shapes.prepare(&hull);
         let points = |shape: &SharedShape| {
             let hull = shape.as_shape::<HullShape>().expect("prepared").hull();
@@ -96,8 +96,8 @@ fn dropped_shapes_are_not_mistaken() {
 
 #[test]
 fn compounds_are_prepared_part_by_part() {
-    let mut dice = Dice::new(103);
-    let hull = dice.hull(30, 1.0).shape;
+    let mut rng = Rng::new(103);
+    let hull = rng.hull(30, 1.0).shape;
     let parts = vec![
         (aside(-1.0), hull.clone()),
         (aside(0.0), SharedShape::ball(0.5)),
@@ -118,8 +118,8 @@ fn compounds_are_prepared_part_by_part() {
 
 #[test]
 fn what_cannot_be_prepared_is_left_alone() {
-    let mut dice = Dice::new(104);
-    let hull = dice.hull(30, 1.0).shape;
+    let mut rng = Rng::new(104);
+    let hull = rng.hull(30, 1.0).shape;
     let ball = SharedShape::ball(0.5);
     let corners = [Vector::ZERO, Vector::X, Vector::Y, Vector::Z];
     let round = SharedShape::round_convex_hull(&corners, 0.1).expect("a solid");

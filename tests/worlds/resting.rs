@@ -289,10 +289,10 @@ fn a_faceted_sphere_rolls_straight_on() {
 /// They stood on one facet of that side, tipped over its edges, and sank in.
 #[test]
 fn boxes_with_a_noisy_side_come_to_rest_on_it() {
-    let mut dice = Rand32::new(1);
+    let mut rng = Rand32::new(1);
     for i in 0..72 {
         let (count, noise) = ([10, 30, 100][i % 3], [1e-4, 1e-3, 3e-3][i / 3 % 3]);
-        let points = noisy_box(count, noise, &mut dice);
+        let points = noisy_box(count, noise, &mut rng);
         let shape = SharedShape::convex_hull(&points).expect("a solid");
         let ground = cuboid(Vector::new(3.0, 0.5, 3.0)).expect("a solid");
         let ground = ColliderBuilder::new(ground).translation(Vector::Y * -0.5);

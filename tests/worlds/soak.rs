@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use rapier3d::prelude::*;
-use testkit::generate::{Dice, prepared};
+use testkit::generate::{Rng, prepared};
 use testkit::world::{Ground, deepest, mixed, ours, shapes, start};
 
 const BODIES: usize = 40;
@@ -28,7 +28,7 @@ struct Deeds {
 
 struct Soak {
     world: PhysicsWorld,
-    dice: Dice,
+    rng: Rng,
     shapes: Vec<SharedShape>,
     deeds: Deeds,
     /// Found below the ground, or beyond the walls.
@@ -37,12 +37,12 @@ struct Soak {
 
 impl Soak {
     fn new(ground: Ground, seed: u128) -> Self {
-        let mut dice = Dice::new(seed);
-        let shapes = shapes(&mut dice);
+        let mut rng = Rng::new(seed);
+        let shapes = shapes(&mut rng);
         Self {
             world: mixed(ground, BODIES, ours()),
             shapes,
-            dice,
+            rng,
             deeds: Deeds::default(),
             escaped: 0,
         }
@@ -52,20 +52,20 @@ impl Soak {
         let dynamic = self.world.bodies.iter().map(|(handle, _)| handle);
         let handles: Vec<RigidBodyHandle> = dynamic.collect();
         let count = handles.len().checked_sub(1)?;
-        Some(handles[self.dice.count(0, count)])
+        Some(handles[self.rng.count(0, count)])
     }
 
     fn some_shape(&mut self) -> SharedShape {
-        match self.dice.count(0, 3) {
-            0 => self.dice.hull(16, 0.7).shape,
-            1 => prepared(&self.dice.hull(40, 0.7).shape),
-            _ => self.shapes[self.dice.count(0, self.shapes.len() - 1)].clone(),
+        match self.rng.count(0, 3) {
+            0 => self.rng.hull(16, 0.7).shape,
+            1 => prepared(&self.rng.hull(40, 0.7).shape),
+            _ => self.shapes[self.rng.count(0, self.shapes.len() - 1)].clone(),
         }
     }
 
     fn some_place(&mut self) -> Pose {
-        let cell = self.dice.count(0, 35);
-        start(cell, &mut self.dice)
+        let cell = self.rng.count(0, 35);
+        start(cell, &mut self.rng)
     }
 
     fn add(&mut self) {
@@ -82,7 +82,7 @@ impl Soak {
         };
         let place = self.some_place();
         let shape = self.some_shape();
-        match self.dice.count(0, 7) {
+        match self.rng.count(0, 7) {
             0 if self.world.bodies.len() < BODIES + 10 => self.add(),
             0 | 1 if self.world.bodies.len() > BODIES / 2 => {
                 self.world.remove_body_with_colliders(handle, true);
@@ -128,7 +128,7 @@ impl Soak {
 
     fn live(&mut self, steps: usize) {
         for step in 0..steps {
-            if self.dice.count(0, 9) == 0 {
+            if self.rng.count(0, 9) == 0 {
                 self.meddle();
             }
             self.world.step();

@@ -7,7 +7,7 @@ use std::thread;
 
 use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::*;
-use testkit::generate::Dice;
+use testkit::generate::Rng;
 use testkit::memory::cold_manifold;
 use testkit::world::{Ground, mixed, state};
 
@@ -40,9 +40,9 @@ struct Changing {
 }
 
 impl Changing {
-    fn new(dice: &mut Dice) -> Self {
+    fn new(rng: &mut Rng) -> Self {
         let dispatcher = IsaGjkDispatcher::default();
-        let shapes = [(); 2].map(|()| dice.hull(24, 1.0).shape);
+        let shapes = [(); 2].map(|()| rng.hull(24, 1.0).shape);
         Self { dispatcher, shapes }
     }
 
@@ -81,7 +81,7 @@ impl Changing {
 
 #[test]
 fn the_promise_ends_with_its_step() {
-    let mut pair = Changing::new(&mut Dice::new(91));
+    let mut pair = Changing::new(&mut Rng::new(91));
     let promised = |pair: &Changing| pair.dispatcher.with_unchanged_shapes(|| pair.check());
     promised(&pair);
     pair.grow();
@@ -93,7 +93,7 @@ fn the_promise_ends_with_its_step() {
 
 #[test]
 fn a_panic_ends_the_promise() {
-    let mut pair = Changing::new(&mut Dice::new(92));
+    let mut pair = Changing::new(&mut Rng::new(92));
     let dispatcher = pair.dispatcher.clone();
     let end = catch_unwind(AssertUnwindSafe(|| {
         dispatcher.with_unchanged_shapes(|| {
@@ -109,7 +109,7 @@ fn a_panic_ends_the_promise() {
 /// A promise within another ends both: what is asked later is proved again.
 #[test]
 fn promises_do_not_outlive_each_other() {
-    let mut pair = Changing::new(&mut Dice::new(93));
+    let mut pair = Changing::new(&mut Rng::new(93));
     let clone = pair.dispatcher.clone();
     pair.dispatcher.clone().with_unchanged_shapes(|| {
         pair.check();

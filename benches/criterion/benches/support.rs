@@ -46,7 +46,7 @@ fn supports(criterion: &mut Criterion) {
                     let start = if order == "coherent" {
                         last
                     } else {
-                        hull.start(dir)
+                        hull.start_vertex(dir)
                     };
                     let (point, vertex) = hull.support(black_box(dir), start, &mut Cost::default());
                     last = vertex;

@@ -14,7 +14,7 @@ use glam::Vec3;
 use isa_gjk::epa::EpaScratch;
 use isa_gjk::manifold::{self, ClipScratch};
 use isa_gjk::pose::RelativePose;
-use isa_gjk::query::{Answer, Memory, Query};
+use isa_gjk::query::{Answer, PairMemory, Query};
 use isa_gjk::stats::Cost;
 use isa_gjk::support::Cso;
 use isa_gjk::{Hull, HullShape};
@@ -92,7 +92,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [first, second] = [shapes[0].hull(), shapes[1].hull()];
     let attitude = attitude(&mut random);
 
-    let mut memory = Memory::None;
+    let mut memory = PairMemory::None;
     for frame in 0..options.frame {
         let pose = place(attitude, frame, options.frames);
         memory = ask([first, second], &pose, memory, &options)?.learned();
@@ -110,7 +110,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 fn ask<'a>(
     hulls: [&'a Hull; 2],
     pose: &Pose,
-    memory: Memory,
+    memory: PairMemory,
     options: &Options,
 ) -> Result<Snapshot<'a>, Box<dyn Error>> {
     let pose = RelativePose::new(pose).ok_or("the pose is not finite")?;
@@ -123,14 +123,14 @@ fn ask<'a>(
     let (answer, stage) = Query {
         cso: &cso,
         max_distance: options.prediction,
-        shells: None,
+        polytope_cache: None,
         scratch: &mut EpaScratch::default(),
         cost: &mut cost,
     }
     .run(&memory)
     .ok_or("the shapes are no solids")?;
     let contacts = match &answer {
-        Answer::Apart(_) => Vec::new(),
+        Answer::Separated(_) => Vec::new(),
         Answer::Near(near) => {
             let scratch = &mut ClipScratch::default();
             let contacts = manifold::contacts(&cso, near, options.prediction, scratch);

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use isa_gjk::manifold::ContactPoint;
 use isa_gjk::pose::RelativePose;
-use isa_gjk::query::{Answer, Feature, Memory};
+use isa_gjk::query::{Answer, Feature, PairMemory};
 use isa_gjk::stats::Cost;
 use isa_gjk::support::{Polytope, Support};
 use isa_gjk::{Hull, Stage};
@@ -24,7 +24,7 @@ pub struct Snapshot<'a> {
     pub pose: RelativePose,
     pub frame: u32,
     /// What the previous frame left.
-    pub memory: Memory,
+    pub memory: PairMemory,
     pub answer: Answer,
     pub stage: Stage,
     pub cost: Cost,
@@ -33,11 +33,11 @@ pub struct Snapshot<'a> {
 
 impl Snapshot<'_> {
     /// What the next frame finds.
-    pub fn learned(&self) -> Memory {
+    pub fn learned(&self) -> PairMemory {
         match &self.answer {
-            Answer::Apart(apart) => Memory::Axis(apart.axis, apart.ids),
+            Answer::Separated(apart) => PairMemory::Axis(apart.axis, apart.ids),
             // The first contact need not be the query's witness: it is what manifolds store.
-            Answer::Near(near) => Memory::Contact(near.normal, self.contacts[0].features),
+            Answer::Near(near) => PairMemory::Contact(near.normal, self.contacts[0].features),
         }
     }
 
@@ -52,13 +52,13 @@ impl Snapshot<'_> {
                 cost.iterations, cost.supports, cost.climb_moves
             ),
             match &self.memory {
-                Memory::None => "remembered: nothing".to_owned(),
-                Memory::Axis(_, [a, b]) => format!("remembered: axis, vertices {a} and {b}"),
-                Memory::Contact(_, features) => format!("remembered: {}", named(features)),
+                PairMemory::None => "remembered: nothing".to_owned(),
+                PairMemory::Axis(_, [a, b]) => format!("remembered: axis, vertices {a} and {b}"),
+                PairMemory::Contact(_, features) => format!("remembered: {}", named(features)),
             },
         ];
         match &self.answer {
-            Answer::Apart(apart) => lines.push(format!(
+            Answer::Separated(apart) => lines.push(format!(
                 "apart by more than {:.2} mm",
                 1e3 * apart.separation
             )),
@@ -122,14 +122,14 @@ impl Snapshot<'_> {
             ..Style::new(REMEMBERED)
         };
         match &self.memory {
-            Memory::None => {}
-            Memory::Axis(axis, ids) => {
+            PairMemory::None => {}
+            PairMemory::Axis(axis, ids) => {
                 let ends = [0, 1].map(|i| self.vertex(i, ids[i]));
                 self.draw_axis(canvas, *axis, ends, style);
                 ends.iter()
                     .for_each(|end| canvas.dot(*end, 5.0, REMEMBERED));
             }
-            Memory::Contact(_, features) => {
+            PairMemory::Contact(_, features) => {
                 (0..2).for_each(|i| self.draw_feature(canvas, i, features[i], style));
             }
         }
@@ -141,7 +141,7 @@ impl Snapshot<'_> {
             ..Style::new(ANSWER)
         };
         match &self.answer {
-            Answer::Apart(apart) => {
+            Answer::Separated(apart) => {
                 let ends = [0, 1].map(|i| self.vertex(i, apart.ids[i]));
                 self.draw_axis(canvas, apart.axis, ends, style);
                 ends.iter().for_each(|end| canvas.dot(*end, 3.0, ANSWER));
@@ -183,7 +183,7 @@ impl Snapshot<'_> {
         match feature {
             Feature::Vertex(v) => canvas.dot(self.vertex(i, v), style.width + 2.0, style.colour),
             Feature::Edge(e) => {
-                if let Some([from, to]) = self.hulls[i].edge(e) {
+                if let Some([from, to]) = self.hulls[i].edge_ends(e) {
                     canvas.line(self.vertex(i, from), self.vertex(i, to), style);
                 }
             }
@@ -221,7 +221,7 @@ impl Snapshot<'_> {
     /// From the first hull to the second.
     fn axis(&self) -> DVec3 {
         match &self.answer {
-            Answer::Apart(apart) => apart.axis,
+            Answer::Separated(apart) => apart.axis,
             Answer::Near(near) => near.normal,
         }
     }
@@ -229,7 +229,7 @@ impl Snapshot<'_> {
     /// Between the witness points or the extreme vertices.
     fn middle(&self) -> DVec3 {
         match &self.answer {
-            Answer::Apart(apart) => self
+            Answer::Separated(apart) => self
                 .vertex(0, apart.ids[0])
                 .midpoint(self.vertex(1, apart.ids[1])),
             Answer::Near(near) => near.on_1.midpoint(near.on_2),

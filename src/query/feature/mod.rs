@@ -17,28 +17,28 @@ mod seeds;
 mod verdict;
 
 pub(super) use polygon::ball_is_inside;
-pub(super) use seeds::Seeds;
-pub(crate) use verdict::{Side, Verdict};
+pub(super) use seeds::EpaSeeds;
+pub(crate) use verdict::{FacetEdge, Verdict};
 
 use std::cmp::Ordering;
 
 use glam::DVec3;
 
 use super::Proximity;
-use crate::both::both;
+use crate::both::map_pair;
 use crate::gjk::SeparatingAxis;
 use crate::pose::RelativePose;
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
 use crate::tolerance::PARALLEL_EDGES;
-use polygon::{cone_holds_ball, crossing, inset, pyramid_holds_ball, side_beyond};
+use polygon::{cone_contains_ball, crossing, edge_outside_origin, inset, pyramid_contains_ball};
 
 /// A part of a polytope's boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Feature {
     /// A vertex.
     Vertex(VertexId),
-    /// An edge, by its name.
+    /// An edge.
     Edge(u32),
     /// A face.
     Face(FaceId),
@@ -53,15 +53,15 @@ pub(super) fn certify<A: Polytope, B: Polytope>(
     tolerance: f64,
     cost: &mut Cost,
 ) -> Verdict {
-    let test = Test {
+    let test = FacetTest {
         max_distance,
         tolerance,
     };
     match features {
         [Feature::Edge(e1), Feature::Edge(e2)] => {
-            match (cso.shape_1.edge(e1), cso.shape_2.edge(e2)) {
+            match (cso.shape_1.edge_ends(e1), cso.shape_2.edge_ends(e2)) {
                 (Some(ends_1), Some(ends_2)) => test.edges(cso, features, ends_1, ends_2, cost),
-                _ => Verdict::NoPlane,
+                _ => Verdict::Degenerate,
             }
         }
         [Feature::Face(f1), other] if cso.shape_1.has_face(f1) => {
@@ -72,9 +72,9 @@ pub(super) fn certify<A: Polytope, B: Polytope>(
             let start = vertex_of(cso.shape_1, other);
             let pose = cso.pose.inverse();
             test.face(cso.shape_2, cso.shape_1, &pose, [f2, start], cost)
-                .mirrored(cso.pose)
+                .reversed(cso.pose)
         }
-        _ => Verdict::NoPlane,
+        _ => Verdict::Degenerate,
     }
 }
 
@@ -94,11 +94,11 @@ pub fn vertices<A: Polytope, B: Polytope>(
 pub(crate) fn vertex_of(shape: &impl Polytope, feature: Feature) -> VertexId {
     let vertex = match feature {
         Feature::Vertex(v) => v,
-        Feature::Edge(e) => shape.edge(e).map_or(0, |ends| ends[0]),
+        Feature::Edge(e) => shape.edge_ends(e).map_or(0, |ends| ends[0]),
         Feature::Face(f) if shape.has_face(f) => shape.face_vertex(f, 0),
         Feature::Face(_) => 0,
     };
-    shape.valid_start(vertex)
+    shape.clamp_vertex(vertex)
 }
 
 /// The features that the vertices of a simplex span. `normal` in frame 1, from shape 1 to 2.
@@ -127,25 +127,25 @@ fn spanned(
             _ if id == first => {}
             None => second = Some(id),
             Some(s) if s == id => {}
-            Some(_) => return Feature::Face(shape.face_at(first, outward)),
+            Some(_) => return Feature::Face(shape.face_at_vertex(first, outward)),
         }
     }
     match second {
         None => Feature::Vertex(first),
         // Two vertices without an edge between them are a diagonal of a face.
-        Some(s) => match shape.edge_id(first, s) {
+        Some(s) => match shape.edge_between(first, s) {
             Some(edge) => Feature::Edge(edge),
-            None => Feature::Face(shape.face_at(first, outward)),
+            None => Feature::Face(shape.face_at_vertex(first, outward)),
         },
     }
 }
 
-struct Test {
+struct FacetTest {
     max_distance: f64,
     tolerance: f64,
 }
 
-impl Test {
+impl FacetTest {
     /// A face of `p` against `q`; everything in the frame of `p`. `ids` are the face and a
     /// vertex of `q` to climb from.
     #[inline]
@@ -159,13 +159,13 @@ impl Test {
     ) -> Verdict {
         let normal = p.face_normal(face);
         if normal == DVec3::ZERO {
-            return Verdict::NoPlane; // a sliver without a plane
+            return Verdict::Degenerate; // a sliver without a plane
         }
         let (on_q, q_id) = q.support(-q_pose.direction_to_2(normal), start, cost);
         let on_q = q_pose.point_to_1(on_q);
         let signed_distance = normal.dot(on_q) - p.face_offset(face);
         if signed_distance > self.max_distance {
-            return Verdict::Apart(SeparatingAxis {
+            return Verdict::Separated(SeparatingAxis {
                 axis: normal,
                 separation: signed_distance,
                 ids: [p.face_vertex(face, 0), q_id],
@@ -181,18 +181,18 @@ impl Test {
         let apex = p.center() - q_pose.point_to_1(q.center());
         let depth = -signed_distance - self.tolerance;
         let inset = inset(p, face, normal, on_q, signed_distance);
-        if inset > 0.0 && (depth <= 0.0 || cone_holds_ball(inset, depth, apex, normal)) {
+        if inset > 0.0 && (depth <= 0.0 || cone_contains_ball(inset, depth, apex, normal)) {
             return Verdict::Certified(certified);
         }
-        let corners = p.corners(face).map(|corner| corner - on_q);
-        if let Some(side) = side_beyond(corners.clone(), normal, self.tolerance) {
-            let ends = both(side.ends, |i| [p.face_vertex(face, i), q_id]);
-            return Verdict::Beyond(Side::new(ends, side.along, normal));
+        let corners = p.face_points(face).map(|corner| corner - on_q);
+        if let Some(side) = edge_outside_origin(corners.clone(), normal, self.tolerance) {
+            let ends = map_pair(side.ends, |i| [p.face_vertex(face, i), q_id]);
+            return Verdict::OutsideEdge(FacetEdge::new(ends, side.along, normal));
         }
-        if signed_distance >= 0.0 || pyramid_holds_ball(corners, apex, depth) {
+        if signed_distance >= 0.0 || pyramid_contains_ball(corners, apex, depth) {
             return Verdict::Certified(certified);
         }
-        Verdict::Unproved(certified)
+        Verdict::Undecided(certified)
     }
 
     /// Two edges that cross; everything in frame 1.
@@ -205,15 +205,15 @@ impl Test {
         ends_2: [VertexId; 2],
         cost: &mut Cost,
     ) -> Verdict {
-        let [a0, a1] = both(ends_1, |v| cso.shape_1.vertex(v));
-        let [b0, b1] = both(ends_2, |v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
+        let [a0, a1] = map_pair(ends_1, |v| cso.shape_1.vertex(v));
+        let [b0, b1] = map_pair(ends_2, |v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
         let (along_1, along_2) = (a1 - a0, b1 - b0);
         let cross = along_1.cross(along_2);
         let area_squared = cross.length_squared();
         let lengths = along_1.length_squared() * along_2.length_squared();
         let crossing_angle = area_squared.partial_cmp(&(PARALLEL_EDGES * lengths));
         if crossing_angle != Some(Ordering::Greater) {
-            return Verdict::NoPlane;
+            return Verdict::Degenerate;
         }
         let center = cso.center();
         let offset = a0 - b0;
@@ -228,21 +228,23 @@ impl Test {
         let corners = vertices.iter().map(|vertex| vertex.w);
         let [s, t] = crossing(offset, along_1, along_2);
         let is_inside = (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t);
-        if !is_inside && let Some(side) = side_beyond(corners.clone(), normal, self.tolerance) {
-            let ends = both(side.ends, |i| vertices[i].ids);
-            return Verdict::Beyond(Side::new(ends, side.along, normal));
+        if !is_inside
+            && let Some(side) = edge_outside_origin(corners.clone(), normal, self.tolerance)
+        {
+            let ends = map_pair(side.ends, |i| vertices[i].ids);
+            return Verdict::OutsideEdge(FacetEdge::new(ends, side.along, normal));
         }
         let extreme = cso.support(normal, [ends_1[0], ends_2[0]], cost);
         let signed_distance = -normal.dot(extreme.w);
         if signed_distance > self.max_distance {
-            return Verdict::Apart(SeparatingAxis {
+            return Verdict::Separated(SeparatingAxis {
                 axis: normal,
                 separation: signed_distance,
                 ids: extreme.ids,
             });
         }
         if -normal.dot(offset) - signed_distance > self.tolerance {
-            return Verdict::Cut(extreme, normal);
+            return Verdict::NotSupporting(extreme, normal);
         }
         let on_1 = a0 + along_1 * s;
         let proximity = Proximity {
@@ -260,12 +262,12 @@ impl Test {
             .sqrt();
         let inset = s.min(1.0 - s).min(t).min(1.0 - t) * area_squared.sqrt() / length;
         if signed_distance >= 0.0
-            || cone_holds_ball(inset, depth, center, normal)
-            || pyramid_holds_ball(corners, center, depth)
+            || cone_contains_ball(inset, depth, center, normal)
+            || pyramid_contains_ball(corners, center, depth)
         {
             return Verdict::Certified(proximity);
         }
-        Verdict::Unproved(proximity)
+        Verdict::Undecided(proximity)
     }
 }
 

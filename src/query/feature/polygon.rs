@@ -4,8 +4,8 @@
 use glam::DVec3;
 use wide::f32x4;
 
-use crate::both::both;
-use crate::support::{Corners, FaceId, Polytope};
+use crate::both::map_pair;
+use crate::support::{FaceId, FacePoints, Polytope};
 use crate::tolerance::INSET_ROUNDING;
 
 /// How far the projection of a point into a face's plane is at least inside of the face; not above zero
@@ -32,7 +32,7 @@ pub(super) fn inset(
                 first + i - count
             }
         };
-        let [a, b, c, d] = shape.four_corners(face, [0, 1, 2, 3].map(number));
+        let [a, b, c, d] = shape.face_points_x4(face, [0, 1, 2, 3].map(number));
         let next = shape.vertex(shape.face_vertex(face, number(4))).as_vec3();
         let row = |axis: usize| {
             let from = f32x4::new([a[axis], b[axis], c[axis], d[axis]]);
@@ -63,7 +63,7 @@ pub(super) fn inset(
 /// The disc alone reaches that far in all directions but those against the normal up to an angle, of which
 /// half has the tangent `depth / inset`; and there the apex does, if it does at that angle.
 #[inline]
-pub(super) fn cone_holds_ball(inset: f64, depth: f64, apex: DVec3, normal: DVec3) -> bool {
+pub(super) fn cone_contains_ball(inset: f64, depth: f64, apex: DVec3, normal: DVec3) -> bool {
     let beneath = -apex.dot(normal);
     let aside = (apex + normal * beneath).length();
     let [inset_squared, depth_squared] = [inset * inset, depth * depth];
@@ -72,7 +72,7 @@ pub(super) fn cone_holds_ball(inset: f64, depth: f64, apex: DVec3, normal: DVec3
 }
 
 /// A side of a polygon.
-pub(super) struct PolygonSide {
+pub(super) struct PolygonEdge {
     /// The numbers of its corners.
     pub ends: [usize; 2],
     /// From the first to the second.
@@ -82,11 +82,11 @@ pub(super) struct PolygonSide {
 /// The side of a polygon, counter-clockwise about `normal`, beyond which the origin projects
 /// farthest; `None` if it projects inside, up to `tolerance`.
 #[inline]
-pub(super) fn side_beyond(
-    corners: impl Corners,
+pub(super) fn edge_outside_origin(
+    corners: impl FacePoints,
     normal: DVec3,
     tolerance: f64,
-) -> Option<PolygonSide> {
+) -> Option<PolygonEdge> {
     let mut beyond = None;
     let mut farthest = tolerance * tolerance;
     let mut from = corners.clone().next_back()?;
@@ -99,7 +99,7 @@ pub(super) fn side_beyond(
             let squared = height * height / inward.length_squared();
             if squared > farthest {
                 farthest = squared;
-                beyond = Some(PolygonSide {
+                beyond = Some(PolygonEdge {
                     ends: [number, i],
                     along,
                 });
@@ -113,7 +113,7 @@ pub(super) fn side_beyond(
 /// Whether the origin is at least `depth` inside of all side planes of the pyramid over a
 /// polygon, counter-clockwise seen from outside, whose apex is beneath it.
 #[inline]
-pub(super) fn pyramid_holds_ball(mut corners: impl Corners, apex: DVec3, depth: f64) -> bool {
+pub(super) fn pyramid_contains_ball(mut corners: impl FacePoints, apex: DVec3, depth: f64) -> bool {
     let Some(mut from) = corners.clone().next_back() else {
         return false;
     };
@@ -137,7 +137,7 @@ pub(in crate::query) fn ball_is_inside(corner: DVec3, inward: DVec3, radius: f64
 pub(super) fn crossing(offset: DVec3, along_1: DVec3, along_2: DVec3) -> [f64; 2] {
     let cross = along_1.cross(along_2);
     let area_squared = cross.length_squared();
-    both([along_2, along_1], |along| {
+    map_pair([along_2, along_1], |along| {
         -offset.dot(along.cross(cross)) / area_squared
     })
 }

@@ -10,12 +10,12 @@ const CORNERS: usize = 4;
 
 /// A few points of the Minkowski difference.
 #[derive(Clone, Copy, Debug, Default)]
-pub(in crate::query) struct Seeds {
+pub(in crate::query) struct EpaSeeds {
     points: [CsoVertex; CORNERS + 1],
     len: usize,
 }
 
-impl Seeds {
+impl EpaSeeds {
     /// Around the facet that `features` span, and the centre beneath it.
     pub fn under<A: Polytope, B: Polytope>(cso: &Cso<'_, A, B>, features: [Feature; 2]) -> Self {
         let mut seeds = Self::default();
@@ -45,7 +45,7 @@ fn corners(shape: &impl Polytope, feature: Feature) -> ([VertexId; CORNERS], usi
     match feature {
         Feature::Vertex(vertex) => ([vertex; CORNERS], 1),
         Feature::Edge(edge) => {
-            let [from, to] = shape.edge(edge).unwrap_or_default();
+            let [from, to] = shape.edge_ends(edge).unwrap_or_default();
             ([from, to, from, to], 2)
         }
         Feature::Face(face) => {

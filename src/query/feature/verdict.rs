@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::both::both;
+use crate::both::map_pair;
 use crate::gjk::SeparatingAxis;
 use crate::pose::RelativePose;
 use crate::query::Proximity;
@@ -11,23 +11,23 @@ use crate::support::{CsoVertex, VertexId};
 /// What a pair of features turned out to prove.
 pub(crate) enum Verdict {
     /// The facet's plane separates the shapes by more than was asked about.
-    Apart(SeparatingAxis),
+    Separated(SeparatingAxis),
     /// The facet's signed distance is that of the shapes.
     Certified(Proximity),
     /// The origin projects beyond this side of the facet: another one is nearest by now.
-    Beyond(Side),
+    OutsideEdge(FacetEdge),
     /// The facet's plane, with this normal, cuts through the difference: this vertex is beyond it.
-    Cut(CsoVertex, DVec3),
+    NotSupporting(CsoVertex, DVec3),
     /// The shapes overlap, perhaps less elsewhere. The answer if the facet turns out to be the
     /// nearest.
-    Unproved(Proximity),
+    Undecided(Proximity),
     /// These features do not span a facet.
-    NoPlane,
+    Degenerate,
 }
 
 /// A side of a facet. In frame 1.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Side {
+pub(crate) struct FacetEdge {
     /// The vertices at its ends.
     pub ends: [[VertexId; 2]; 2],
     /// The facet's normal, from shape 1 to shape 2.
@@ -36,7 +36,7 @@ pub(crate) struct Side {
     pub outward: DVec3,
 }
 
-impl Side {
+impl FacetEdge {
     /// From one vertex to the next, which is `along` away.
     #[inline]
     pub(super) fn new(ends: [[VertexId; 2]; 2], along: DVec3, normal: DVec3) -> Self {
@@ -51,46 +51,46 @@ impl Side {
 impl Verdict {
     /// From the frame of shape 2, with the shapes swapped, to frame 1.
     #[inline]
-    pub(super) fn mirrored(&self, pose: &RelativePose) -> Self {
+    pub(super) fn reversed(&self, pose: &RelativePose) -> Self {
         let direction = |dir| -pose.direction_to_1(dir);
         match self {
-            Self::Apart(apart) => Self::Apart(SeparatingAxis {
+            Self::Separated(apart) => Self::Separated(SeparatingAxis {
                 axis: direction(apart.axis),
                 separation: apart.separation,
-                ids: swapped(apart.ids),
+                ids: flipped(apart.ids),
             }),
-            Self::Certified(proximity) => Self::Certified(mirrored(proximity, pose)),
-            Self::Beyond(side) => Self::Beyond(Side {
-                ends: both(side.ends, swapped),
+            Self::Certified(proximity) => Self::Certified(reversed(proximity, pose)),
+            Self::OutsideEdge(side) => Self::OutsideEdge(FacetEdge {
+                ends: map_pair(side.ends, flipped),
                 normal: direction(side.normal),
                 outward: direction(side.outward),
             }),
-            Self::Cut(vertex, normal) => {
+            Self::NotSupporting(vertex, normal) => {
                 let vertex = CsoVertex {
                     w: direction(vertex.w),
                     on_1: pose.point_to_1(vertex.on_2()),
-                    ids: swapped(vertex.ids),
+                    ids: flipped(vertex.ids),
                 };
-                Self::Cut(vertex, direction(*normal))
+                Self::NotSupporting(vertex, direction(*normal))
             }
-            Self::Unproved(candidate) => Self::Unproved(mirrored(candidate, pose)),
-            Self::NoPlane => Self::NoPlane,
+            Self::Undecided(candidate) => Self::Undecided(reversed(candidate, pose)),
+            Self::Degenerate => Self::Degenerate,
         }
     }
 }
 
 #[inline]
-fn swapped<T>([a, b]: [T; 2]) -> [T; 2] {
+fn flipped<T>([a, b]: [T; 2]) -> [T; 2] {
     [b, a]
 }
 
 #[inline]
-fn mirrored(p: &Proximity, pose: &RelativePose) -> Proximity {
+fn reversed(p: &Proximity, pose: &RelativePose) -> Proximity {
     Proximity {
         signed_distance: p.signed_distance,
         normal: -pose.direction_to_1(p.normal),
         on_1: pose.point_to_1(p.on_2),
         on_2: pose.point_to_1(p.on_1),
-        features: swapped(p.features),
+        features: flipped(p.features),
     }
 }

@@ -16,7 +16,7 @@ pub const RADIUS: Real = 0.5;
 /// Bounding radius that hulls from files are scaled to: objects of about half a metre.
 const FILE_RADIUS: Real = 0.28;
 /// Sheets are no objects to pile up: they are left out below this ratio of thickness to size.
-const THINNEST: f64 = 0.03;
+const MIN_EXTENT: f64 = 0.03;
 /// Volume over the cube of the bounding radius below which a hull counts as flat.
 const FLAT: Real = 1e-5;
 /// Beginnings of the names of shapes that come from real objects.
@@ -145,7 +145,7 @@ fn real(distinct: u32) -> Result<Vec<SharedShape>, String> {
         .as_array()
         .into_iter()
         .flatten()
-        .filter(|entry| entry["thinness"].as_f64().is_some_and(|t| t >= THINNEST))
+        .filter(|entry| entry["thinness"].as_f64().is_some_and(|t| t >= MIN_EXTENT))
         .filter_map(|entry| entry["name"].as_str())
         .filter(|name| REAL.iter().any(|beginning| name.starts_with(beginning)))
         .collect();
