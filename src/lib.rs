@@ -105,19 +105,26 @@
 
 #[cfg(feature = "bevy")]
 pub mod bevy;
-mod both;
-pub mod dispatcher;
+/// The plug: from parry's shapes and manifolds to queries and back.
+pub mod dispatcher {
+    pub use crate::parry::dispatcher::IsaGjkDispatcher;
+}
 pub mod epa;
-mod fours;
 pub mod gjk;
 mod greatest;
 pub mod hull;
-pub mod hull_shape;
+/// A `Shape` that carries its prepared hull.
+pub mod hull_shape {
+    pub use crate::parry::hull_shape::{HullShape, PreparedShapes};
+}
 pub mod manifold;
+mod map_pair;
+mod parry;
 pub mod pose;
 pub mod primitive;
 pub mod query;
 pub mod ray_cast;
+mod simd;
 pub mod simplex;
 pub mod stats;
 pub mod support;

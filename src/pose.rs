@@ -3,7 +3,7 @@
 use glam::{DMat3, DQuat, DVec3};
 use parry3d::math::Pose;
 
-use crate::fours::DVec3x4;
+use crate::simd::DVec3x4;
 use crate::tolerance::NEARLY_UNIT;
 
 /// Maps points and directions between the frames of a pair: frame 1 is the first shape's.

@@ -11,7 +11,7 @@ use rapier3d::prelude::{
 
 use super::collision::{CollisionEvent, CollisionRecorder};
 use super::components::{Collider, PhysicsTransform, RigidBody, Velocity};
-use crate::dispatcher::IsaGjkDispatcher;
+use crate::IsaGjkDispatcher;
 use crate::stats::Stats;
 
 /// The rapier world of all bodies and colliders.

@@ -9,12 +9,12 @@
 //! origin may lie anywhere at the start, on a vertex, an edge or a face or even outside: no
 //! touching configuration is a special case. All that is asked of the first polytope is volume.
 
+mod cached_polytope;
 mod polytope;
+mod polytope_cache;
 mod seed;
-mod shell;
-mod shells;
 
-pub use shells::PolytopeCache;
+pub use polytope_cache::PolytopeCache;
 
 use glam::DVec3;
 

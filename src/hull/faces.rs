@@ -5,9 +5,9 @@ use std::{iter, mem};
 
 use glam::{DVec3, Vec3};
 
-use super::caps::{self, FaceClusters};
+use super::build::half_edge::{HalfEdge, HalfEdgeMesh, next, triangle};
+use super::clusters::{self, FaceClusters};
 use super::graph::{EdgeGraph, pack_edge};
-use super::surface::{HalfEdge, HalfEdgeMesh, next, triangle};
 use crate::support::FaceId;
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, MIN_TRIANGLE_HEIGHT};
 
@@ -157,7 +157,7 @@ impl Faces {
 
     /// Finds the clusters, when the `graph` knows the faces.
     pub fn add_clusters(&mut self, points: &[DVec3], graph: &EdgeGraph, merged: &MergedFaces) {
-        let clusters = caps::grow_clusters(points, self, graph, &merged.largest_first);
+        let clusters = clusters::grow_clusters(points, self, graph, &merged.largest_first);
         if clusters.is_empty() {
             return;
         }

@@ -2,7 +2,7 @@
 
 use std::{array, iter};
 
-use super::surface::{DirectedEdge, HalfEdgeMesh, triangle};
+use super::build::half_edge::{DirectedEdge, HalfEdgeMesh, triangle};
 use crate::support::VertexId;
 
 /// The id of an edge is its lower vertex, above this many bits, and its slot among that vertex's

@@ -1,22 +1,17 @@
 //! Convex hulls prepared for coherent queries: edge graph, faces, and a way to extreme vertices,
 //! which is a climb from a start-vertex table, or for small ones a scan.
 
-mod build;
-mod caps;
+pub(crate) mod build;
 mod climb;
-mod cloud;
+mod clusters;
 mod error;
 mod faces;
-mod flat_sides;
 mod graph;
-mod order;
 mod scan;
-mod start;
-mod surface;
+mod start_table;
 mod top;
-pub(crate) mod topology;
 
-pub(crate) use cloud::hull_of_points;
+pub(crate) use build::point_cloud::hull_of_points;
 pub use error::HullError;
 
 use glam::{DVec3, Vec3};
@@ -27,7 +22,7 @@ use climb::HillClimb;
 use faces::Faces;
 use graph::EdgeGraph;
 use scan::Scan;
-use start::StartTable;
+use start_table::StartTable;
 
 /// A convex polytope with everything precomputed that a query needs.
 ///

@@ -15,7 +15,7 @@ use wide::f32x4;
 
 use super::polygon::{EdgeLanes, LANES, PolygonRows};
 use super::sectors;
-use crate::both::map_pair;
+use crate::map_pair::map_pair;
 
 /// From so many pairs of sides on, only near ones are compared.
 const MANY: usize = 1200;

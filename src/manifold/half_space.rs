@@ -4,13 +4,13 @@ use glam::Vec2;
 use wide::f64x4;
 
 use super::clip::Clipper;
+use super::contact_frame::ContactFrame;
 use super::contacts::{Contacts, MAX_POINTS};
-use super::plane::ContactFrame;
 use super::polygon::LANES;
 use super::{ClipScratch, Selection};
-use crate::fours::{DVec3x4, to_f32x4};
 use crate::pose::RelativePose;
 use crate::query::{Feature, Proximity, vertex_of};
+use crate::simd::{DVec3x4, to_f32x4};
 use crate::support::Polytope;
 use crate::tuning::{EDGE_ON, SAME_POINT};
 

@@ -8,11 +8,11 @@
 //! manifold's deepest point is the query's answer.
 
 mod clip;
+mod contact_frame;
 mod contacts;
 mod corrected;
 mod half_space;
 mod patch;
-mod plane;
 mod polygon;
 mod reduce;
 mod sectors;
@@ -24,8 +24,8 @@ use crate::support::{Cso, Polytope};
 use crate::tolerance::SAME_DEPTH;
 use crate::tuning::SAME_POINT;
 use clip::Clipper;
+use contact_frame::FaceHeight;
 use patch::ContactPatch;
-use plane::FaceHeight;
 use reduce::Candidates;
 
 pub use contacts::{ContactPoint, Contacts, MAX_POINTS};

@@ -5,8 +5,8 @@ use wide::f32x4;
 
 use super::Selection;
 use super::clip::{Clipper, VertexOrigin};
+use super::contact_frame::{ContactFrame, FaceHeight, PlaneProjection};
 use super::contacts::{Contacts, MAX_POINTS};
-use super::plane::{ContactFrame, FaceHeight, PlaneProjection};
 use super::polygon::lane_mask;
 use super::reduce::Candidates;
 use crate::query::{Feature, Proximity};

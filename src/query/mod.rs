@@ -13,15 +13,15 @@
 //! as cold for it. A stale or wrong memory costs time, never accuracy: nothing is believed that is not
 //! re-evaluated at the present poses.
 
-mod corner;
-mod fan;
-mod feature;
-mod trail;
-mod walk;
+mod certificate;
+mod facet_walk;
+mod gauss_map;
+mod seeds;
 mod witness;
 
-pub use feature::{Feature, vertices};
-pub(crate) use feature::{Verdict, vertex_of};
+pub(crate) use certificate::facet::vertex_of;
+pub use certificate::facet::{Feature, vertices};
+pub(crate) use certificate::verdict::Verdict;
 
 use glam::DVec3;
 
@@ -32,7 +32,8 @@ use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
 use crate::tolerance::DEPTH_GAP;
 use crate::tuning::{FACET_WALK_RANGE, TILT};
-use feature::EpaSeeds;
+use certificate::{facet, neighbors};
+use seeds::EpaSeeds;
 
 /// What GJK and EPA count as in a query that goes on from a previous frame, and without one.
 pub(crate) const WARM: [Stage; 2] = [Stage::WarmGjk, Stage::WarmEpa];
@@ -214,7 +215,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         let tilted = tilted(axis, &vertex);
         match self.test_axis(tilted, vertex.ids) {
             Ok(apart) => Some((Answer::Separated(apart), Stage::Axis)),
-            Err(second) => match walk::facet_at_vertex(self.cso, &second, tilted) {
+            Err(second) => match gauss_map::facet_at_vertex(self.cso, &second, tilted) {
                 Some(features) => self.walk_from(tilted, features, gjk),
                 None => self.run_gjk(&[vertex, second], gjk),
             },
@@ -261,7 +262,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         {
             return Some((Answer::Near(*candidate), Stage::CachedPolytope));
         }
-        if fan::contains_ball(self.cso, candidate, self.tolerance()) {
+        if neighbors::contains_ball(self.cso, candidate, self.tolerance()) {
             return Some((Answer::Near(*candidate), stage));
         }
         let seeds = EpaSeeds::under(self.cso, candidate.features);
@@ -301,7 +302,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             normal: closest.normal,
             on_1: closest.on_1,
             on_2: closest.on_2,
-            features: feature::of_simplex(self.cso, closest.simplex.vertices(), closest.normal),
+            features: facet::of_simplex(self.cso, closest.simplex.vertices(), closest.normal),
         })
     }
 

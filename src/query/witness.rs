@@ -6,7 +6,8 @@
 
 use glam::DVec3;
 
-use super::{Proximity, feature};
+use super::Proximity;
+use super::certificate::facet;
 use crate::epa::Penetration;
 use crate::gjk::{self, Outcome};
 use crate::simplex::Preferred;
@@ -29,7 +30,7 @@ pub(super) fn of_depth<A: Polytope, B: Polytope>(
         features,
     };
     let at_hand = || {
-        let features = feature::of_simplex(cso, depth.face.iter(), depth.normal);
+        let features = facet::of_simplex(cso, depth.face.iter(), depth.normal);
         proximity([depth.on_1, depth.on_2], features)
     };
     let radius = cso.min_radius();
@@ -47,7 +48,7 @@ pub(super) fn of_depth<A: Polytope, B: Polytope>(
     match gjk::distance::<Preferred, _, _>(&apart, &start, f64::INFINITY, cost) {
         Outcome::Disjoint(closest) => {
             let simplex = closest.simplex.vertices();
-            let features = feature::of_simplex(cso, simplex, depth.normal);
+            let features = facet::of_simplex(cso, simplex, depth.normal);
             proximity([closest.on_1, closest.on_2 - way], features)
         }
         _ => at_hand(),

@@ -14,6 +14,6 @@ pub mod report;
 pub mod scanned;
 pub mod scene;
 pub mod scenes;
+pub mod shape_samples;
 pub mod twins;
 pub mod world;
-pub mod zoo;

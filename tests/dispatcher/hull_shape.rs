@@ -9,8 +9,8 @@ use parry3d::shape::{ShapeType, SharedShape, TypedShape};
 use testkit::cases::hulls;
 use testkit::generate::{Rng, prepared};
 use testkit::memory::{Manifold, Memory};
+use testkit::shape_samples::{poses, shape_samples};
 use testkit::twins::{assert_same, hull_shape, with_twins};
-use testkit::zoo::{poses, shape_samples};
 
 /// Deepest point of all manifolds.
 fn deepest(manifolds: &[Manifold]) -> Option<Real> {

@@ -16,7 +16,7 @@ use parry3d::query::{
     DefaultQueryDispatcher, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
 };
 use testkit::memory::{Manifold, Memory};
-use testkit::zoo::{ShapeSample, poses, shape_samples};
+use testkit::shape_samples::{ShapeSample, poses, shape_samples};
 
 const PREDICTION: Real = 0.1;
 

@@ -17,7 +17,7 @@ use testkit::generate::{Rng, prepared};
 use testkit::oracle::{Solid, signed_distance};
 use testkit::pose::ExactPose;
 use testkit::report::{Finding, Report};
-use testkit::zoo::shape_samples;
+use testkit::shape_samples::shape_samples;
 
 /// Relative to the size of the pair.
 const TOLERANCE: f64 = 1.0e-5;

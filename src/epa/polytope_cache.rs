@@ -1,0 +1,83 @@
+//! The cached polytopes of many pairs.
+
+use super::EpaScratch;
+use super::cached_polytope::CachedPolytope;
+use crate::stats::Cost;
+use crate::support::{Cso, Polytope, Support};
+
+/// Room for so many pairs, if each has a slot of its own.
+const SLOTS: usize = 1 << SLOT_BITS;
+const SLOT_BITS: u32 = 11;
+
+/// A new entry, or one that has just proved a depth, survives this many attempts to replace it. Where
+/// there are more pairs than places, some prove and the others lose little.
+const PROTECTED_MISSES: u8 = 16;
+
+/// What was expanded for pairs in earlier frames, for proofs that their depths are the least. A pair
+/// is found by a key, any number that stays the same from frame to frame.
+///
+/// Nothing depends on what is kept and what was lost but how long an answer takes; a key that means
+/// another pair by now is no danger.
+#[derive(Clone, Debug)]
+pub struct PolytopeCache(Box<[CacheSlot]>);
+
+#[derive(Clone, Debug, Default)]
+struct CacheSlot {
+    key: u64,
+    /// So many wishes of other pairs for the place are refused.
+    protected_misses: u8,
+    polytope: Option<Box<CachedPolytope>>,
+}
+
+impl Default for PolytopeCache {
+    fn default() -> Self {
+        Self(vec![CacheSlot::default(); SLOTS].into())
+    }
+}
+
+impl PolytopeCache {
+    /// Whether [`penetration_below`](super::penetration_below) would say that the depth is known, as
+    /// far as the cached polytope of this pair can tell, or what it grows to in a few expansions.
+    pub fn proves_depth<A: Polytope, B: Polytope>(
+        &mut self,
+        key: u64,
+        cso: &Cso<'_, A, B>,
+        known_depth: f64,
+        scratch: &mut EpaScratch,
+        cost: &mut Cost,
+    ) -> bool {
+        let slot = self.slot(key);
+        match &mut slot.polytope {
+            Some(polytope) if slot.key == key => {
+                let proved = polytope.proves_depth(cso, known_depth, scratch, cost);
+                slot.protected_misses = if proved { PROTECTED_MISSES } else { 0 };
+                proved
+            }
+            _ => false,
+        }
+    }
+
+    /// Keeps the polytope of the last expansion for this pair.
+    pub fn store<A: Support, B: Support>(
+        &mut self,
+        key: u64,
+        cso: &Cso<'_, A, B>,
+        scratch: &EpaScratch,
+    ) {
+        let slot = self.slot(key);
+        if slot.key != key {
+            if slot.protected_misses > 0 {
+                slot.protected_misses -= 1;
+                return;
+            }
+            (slot.key, slot.protected_misses) = (key, PROTECTED_MISSES);
+        }
+        slot.polytope.get_or_insert_default().store(cso, scratch);
+    }
+
+    fn slot(&mut self, key: u64) -> &mut CacheSlot {
+        // Fibonacci hashing: the highest bits depend on all bits of the key.
+        let hash = key.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        &mut self.0[(hash >> (u64::BITS - SLOT_BITS)) as usize]
+    }
+}

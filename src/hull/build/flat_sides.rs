@@ -1,0 +1,175 @@
+//! Flat sides in a triangulation of our own, so that a hull does not depend on the one it came in.
+//!
+//! A flat side is a polygon whose triangulation says nothing about the shape, but ids of edges depend
+//! on it. If it is another one whenever a shape is made anew, a prepared hull must be told from it edge
+//! by edge.
+
+use glam::DVec3;
+
+use super::half_edge::{HalfEdge, HalfEdgeMesh, next};
+use crate::tolerance::{BENT_EDGE, FLAT_EDGE, FLAT_SIDE};
+
+/// The triangles of a surface, in an order and over diagonals that depend on its vertices only. `None`
+/// if that cannot be promised: a side is not a strictly convex polygon, hardly flat or hardly bent.
+pub(in crate::hull) fn retriangulated(
+    points: &[DVec3],
+    triangles: &[[u32; 3]],
+    radius: f64,
+) -> Option<Vec<[u32; 3]>> {
+    let mesh = HalfEdgeMesh::new(points.len(), triangles).ok()?;
+    let sides = Sides::new(points, &mesh, radius)?;
+    let mut all: Vec<[u32; 3]> = sides
+        .polygons
+        .iter()
+        .flat_map(|side| zigzag(side))
+        .collect();
+    all.sort_unstable();
+    Some(all)
+}
+
+/// The polygons that a surface consists of.
+struct Sides<'a> {
+    points: &'a [DVec3],
+    mesh: &'a HalfEdgeMesh<'a>,
+    radius: f64,
+    polygons: Vec<Vec<u32>>,
+    /// Of each half-edge between polygons: the unit normal of its polygon, and how far beside it the
+    /// nearest other corner is.
+    borders: Vec<(DVec3, f64)>,
+    /// Of each corner of the polygon at hand, the half-edge around it that starts there.
+    outgoing: Vec<HalfEdge>,
+}
+
+impl<'a> Sides<'a> {
+    fn new(points: &'a [DVec3], mesh: &'a HalfEdgeMesh<'a>, radius: f64) -> Option<Self> {
+        let half_edges = 3 * mesh.triangles.len();
+        let mut sides = Self {
+            points,
+            mesh,
+            radius,
+            polygons: Vec::with_capacity(mesh.triangles.len()),
+            borders: vec![(DVec3::ZERO, 0.0); half_edges],
+            outgoing: vec![0; points.len()],
+        };
+        let is_flat: Vec<bool> = (0..half_edges as HalfEdge)
+            .map(|h| sides.is_flat(h))
+            .collect();
+        let mut seen = vec![false; mesh.triangles.len()];
+        for t in 0..seen.len() {
+            if !seen[t] {
+                sides.add(t, &is_flat, &mut seen)?;
+            }
+        }
+        let all_bend = (0..half_edges as HalfEdge).all(|h| is_flat[h as usize] || sides.bends(h));
+        all_bend.then_some(sides)
+    }
+
+    fn along(&self, h: HalfEdge) -> DVec3 {
+        self.points[self.mesh.end(h) as usize] - self.points[self.mesh.start(h) as usize]
+    }
+
+    /// Whether the surface hardly bends at an edge.
+    fn is_flat(&self, h: HalfEdge) -> bool {
+        let from = self.points[self.mesh.start(h) as usize];
+        let third = |h| self.points[self.mesh.end(next(h)) as usize] - from;
+        let twin = self.mesh.twin(h);
+        let (before, after) = (
+            third(twin).cross(self.along(h)),
+            self.along(h).cross(third(h)),
+        );
+        let area = before.length_squared().max(after.length_squared()).sqrt();
+        before.dot(third(h)).abs() <= FLAT_EDGE * self.radius * area
+    }
+
+    /// Adds the polygon around a triangle.
+    fn add(&mut self, triangle: usize, is_flat: &[bool], seen: &mut [bool]) -> Option<()> {
+        let (mut stack, mut border) = (vec![triangle], Vec::new());
+        let mut count = 0;
+        seen[triangle] = true;
+        while let Some(t) = stack.pop() {
+            count += 1;
+            for h in 3 * t as HalfEdge..3 * t as HalfEdge + 3 {
+                let beside = self.mesh.twin(h) as usize / 3;
+                if !is_flat[h as usize] {
+                    border.push(h);
+                } else if !std::mem::replace(&mut seen[beside], true) {
+                    stack.push(beside);
+                }
+            }
+        }
+        // A polygon without a hole, or a corner inside.
+        if border.len() != count + 2 {
+            return None;
+        }
+        self.sort(&mut border)?;
+        let polygon: Vec<u32> = border.iter().map(|&h| self.mesh.start(h)).collect();
+        let corner = |i: usize| self.points[polygon[i % polygon.len()] as usize];
+        let fan = (1..polygon.len() - 1)
+            .map(|i| (corner(i) - corner(0)).cross(corner(i + 1) - corner(0)));
+        let normal = fan.sum::<DVec3>().try_normalize()?;
+        let height = |i: usize| (corner(i) - corner(0)).dot(normal);
+        let thickness = FLAT_SIDE * self.radius;
+        if (0..polygon.len()).any(|i| height(i).abs() > thickness) {
+            return None;
+        }
+        for (i, &h) in border.iter().enumerate() {
+            let inward = normal.cross(corner(i + 1) - corner(i)).try_normalize()?;
+            let beside = |j: usize| (corner(j) - corner(i)).dot(inward);
+            let nearest = beside(i + 2).min(beside(i + polygon.len() - 1));
+            if nearest <= 0.0 {
+                return None;
+            }
+            self.borders[h as usize] = (normal, nearest);
+        }
+        self.polygons.push(polygon);
+        Some(())
+    }
+
+    /// Sorts the border of a polygon, counter-clockwise from the lowest corner on.
+    fn sort(&mut self, border: &mut [HalfEdge]) -> Option<()> {
+        for &h in &*border {
+            self.outgoing[self.mesh.start(h) as usize] = h;
+        }
+        let first = *border.iter().min_by_key(|&&h| self.mesh.start(h))?;
+        let mut h = first;
+        let count = border.len();
+        for (i, place) in border.iter_mut().enumerate() {
+            *place = h;
+            h = self.outgoing[self.mesh.end(h) as usize];
+            // A border that touches itself comes back too early.
+            if (h == first) != (i + 1 == count) {
+                return None;
+            }
+        }
+        Some(())
+    }
+
+    /// Whether the surface bends between two polygons, whatever triangles they are made of.
+    fn bends(&self, h: HalfEdge) -> bool {
+        let [(here, nearest_here), (there, nearest_there)] =
+            [h, self.mesh.twin(h)].map(|h| self.borders[h as usize]);
+        let nearest = nearest_here.min(nearest_there);
+        nearest * here.cross(there).length() > BENT_EDGE * self.radius
+    }
+}
+
+/// The triangles of a polygon, each from its lowest corner on, cut off from both ends in turn: so no
+/// corner has many of them.
+fn zigzag(polygon: &[u32]) -> Vec<[u32; 3]> {
+    let (mut low, mut high) = (0, polygon.len() - 1);
+    let mut triangles = Vec::with_capacity(polygon.len() - 2);
+    while high - low > 1 {
+        let is_low = triangles.len() % 2 == 0;
+        let middle = if is_low { low + 1 } else { high - 1 };
+        let mut triangle = [low, middle, high].map(|i| polygon[i]);
+        let lowest = (0..3).min_by_key(|&i| triangle[i]).unwrap_or(0);
+        triangle.rotate_left(lowest);
+        triangles.push(triangle);
+        if is_low {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    triangles
+}

@@ -1,0 +1,106 @@
+//! The surface of a point cloud's hull, by parry's hull builder.
+
+use std::collections::{HashMap, HashSet};
+
+use glam::{DMat3, DVec3, Vec3};
+
+use super::validate::validate_finite;
+use crate::hull::{Hull, HullError};
+use crate::support::{FaceId, Polytope, Support};
+use crate::tolerance::{MAX_LEFT_OUT, MIN_EXTENT, MIN_TRUSTED_THICKNESS};
+
+/// Gives `build` the vertices and triangles around a point cloud.
+///
+/// The builder decides in f32 what is flat, and finds no convex surface around needles and discs
+/// that are too thin for that, or one that leaves corners out. Such a cloud is whitened first: an
+/// affine map changes nothing of a hull but its coordinates.
+pub(crate) fn hull_of_points<T: AsRef<Hull>>(
+    points: &[Vec3],
+    build: impl Fn(Vec<Vec3>, &[[u32; 3]]) -> Result<T, HullError>,
+) -> Result<T, HullError> {
+    if points.len() < 4 {
+        return Err(HullError::TooFewPoints);
+    }
+    validate_finite(points)?;
+    let around_all = |vertices, triangles: &[[u32; 3]]| {
+        let built = build(vertices, triangles)?;
+        if misses_points(built.as_ref(), points) {
+            return Err(HullError::BuilderFailed);
+        }
+        Ok(built)
+    };
+    let as_it_is = || {
+        let (vertices, triangles) = triangulate(points)?;
+        around_all(vertices, &triangles)
+    };
+    let after_whitening = || {
+        let whitened = whiten(points)?;
+        let (vertices, triangles) = triangulate(&whitened).ok()?;
+        around_all(unwhiten(points, &whitened, &vertices), &triangles).ok()
+    };
+    as_it_is().or_else(|error| after_whitening().ok_or(error))
+}
+
+fn triangulate(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
+    let (vertices, triangles) =
+        parry3d::transformation::try_convex_hull(points).map_err(|_| HullError::BuilderFailed)?;
+    // Of points on a line the builder keeps the ends.
+    if vertices.len() < 4 {
+        return Err(HullError::Flat);
+    }
+    Ok((vertices, triangles))
+}
+
+/// Whether one of the points is outside of a hull that is thin: of others the builder leaves none out.
+fn misses_points(hull: &Hull, points: &[Vec3]) -> bool {
+    let faces = || 0..hull.face_count() as FaceId;
+    let height = |face, p: DVec3| hull.face_normal(face).dot(p) - hull.face_offset(face);
+    let thick = MIN_TRUSTED_THICKNESS * hull.radius();
+    let is_thin = faces().any(|face| -height(face, hull.center()) < thick);
+    if !is_thin {
+        return false;
+    }
+    // Vertices, of which a large cloud may have nothing else, need no look at all faces.
+    let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
+    let vertices: HashSet<_> = hull.points().iter().map(bits).collect();
+    let is_outside =
+        |p: &Vec3| faces().any(|face| height(face, p.as_dvec3()) > MAX_LEFT_OUT * hull.radius());
+    let mut others = points.iter().filter(|p| !vertices.contains(&bits(p)));
+    others.any(is_outside)
+}
+
+/// An affine image of the points with unit covariance; `None` if they span no volume.
+fn whiten(points: &[Vec3]) -> Option<Vec<Vec3>> {
+    let count = points.len() as f64;
+    let exact = || points.iter().map(|p| p.as_dvec3());
+    let center = exact().sum::<DVec3>() / count;
+    let outer = |d: DVec3| DMat3::from_cols(d * d.x, d * d.y, d * d.z);
+    let covariance = exact().fold(DMat3::ZERO, |sum, p| sum + outer(p - center)) * count.recip();
+    let [x, y, z] = [covariance.x_axis, covariance.y_axis, covariance.z_axis];
+    // Cholesky's factor of the covariance, column by column; its inverse undoes the covariance.
+    let least = MIN_EXTENT * MIN_EXTENT * (x.x + y.y + z.z);
+    let root = |pivot: f64| (pivot > least).then(|| pivot.sqrt());
+    let xx = root(x.x)?;
+    let (xy, xz) = (x.y / xx, x.z / xx);
+    let yy = root(y.y - xy * xy)?;
+    let yz = (y.z - xy * xz) / yy;
+    let zz = root(z.z - xz * xz - yz * yz)?;
+    let image = |p: DVec3| {
+        let d = p - center;
+        let x = d.x / xx;
+        let y = (d.y - xy * x) / yy;
+        let z = (d.z - xz * x - yz * y) / zz;
+        DVec3::new(x, y, z).as_vec3()
+    };
+    Some(exact().map(image).collect())
+}
+
+/// The points whose images the builder chose as vertices.
+fn unwhiten(points: &[Vec3], images: &[Vec3], chosen: &[Vec3]) -> Vec<Vec3> {
+    let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
+    let of_image: HashMap<_, _> = images.iter().map(bits).zip(points).collect();
+    chosen
+        .iter()
+        .map(|vertex| *of_image[&bits(vertex)])
+        .collect()
+}

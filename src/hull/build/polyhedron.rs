@@ -1,0 +1,247 @@
+//! The triangulated surface behind parry's convex polyhedron.
+//!
+//! Parry joins triangles up to 1.5 degrees apart, so that its faces may miss vertices; but it
+//! still lists all edges of the triangulation. Seen from a point inside, the edges around a
+//! vertex have one cyclic order, and neighbours in that order span the triangles again.
+
+use std::cmp::Ordering;
+
+use glam::{DVec2, DVec3, Vec3};
+use parry3d::shape::ConvexPolyhedron;
+
+use super::flat_sides;
+use super::validate::MAX_VERTICES;
+use crate::hull::{Hull, HullError};
+use crate::tolerance::FLAT_EDGE;
+
+/// The hull of a polyhedron; that of its points where its surface is not a convex triangulation of
+/// them all.
+///
+/// Vertex ids are indices into [`Hull::points`], which are not in the order of the polyhedron's.
+impl TryFrom<&ConvexPolyhedron> for Hull {
+    type Error = HullError;
+
+    fn try_from(polyhedron: &ConvexPolyhedron) -> Result<Self, HullError> {
+        hull_and_diagonals(polyhedron).0
+    }
+}
+
+/// The hull of a polyhedron, and what edges it depends on.
+pub(crate) fn hull_and_diagonals(
+    polyhedron: &ConvexPolyhedron,
+) -> (Result<Hull, HullError>, Diagonals) {
+    let points = polyhedron.points();
+    // All of them are vertices, but for those inside of flat sides: a hull builder would leave too
+    // many, and take seconds.
+    if points.len() > MAX_VERTICES {
+        return (Err(HullError::TooManyPoints), Diagonals(Box::default()));
+    }
+    let Some(surface) = Triangulation::of(polyhedron) else {
+        return (Hull::from_points(points), Diagonals::all(polyhedron));
+    };
+    if let Some(hull) = surface.with_own_diagonals(points) {
+        return (Ok(hull), Diagonals(Box::default()));
+    }
+    match Hull::from_reordered_triangles(points.to_vec(), &surface.triangles) {
+        Ok(hull) => (
+            Ok(hull),
+            Diagonals::of(polyhedron, surface.flat_edges.into_iter()),
+        ),
+        Err(_) => (Hull::from_points(points), Diagonals::all(polyhedron)),
+    }
+}
+
+/// A number that depends on nothing but the points and edges of a polyhedron, of which its hull is
+/// made; others seldom share it.
+pub(crate) fn fingerprint(polyhedron: &ConvexPolyhedron) -> u64 {
+    let mix = |hash: u64, word: u64| {
+        let mixed = (hash ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        mixed ^ mixed >> 32
+    };
+    let coordinates = bytemuck::cast_slice::<Vec3, u32>(polyhedron.points());
+    let points = coordinates.iter().map(|&bits| u64::from(bits));
+    let edges = polyhedron.edges().iter().map(|edge| {
+        let [a, b] = edge.vertices.map(u64::from);
+        a << 32 | b
+    });
+    points.chain(edges).fold(0, mix)
+}
+
+/// The edges that a hull depends on besides its points: which they are, and their ends.
+///
+/// Those across which the surface bends are in any triangulation of the points. The others may have
+/// been the other diagonal of their two triangles.
+#[derive(Debug)]
+pub(crate) struct Diagonals(Box<[(u32, [u32; 2])]>);
+
+impl Diagonals {
+    fn of(polyhedron: &ConvexPolyhedron, ids: impl Iterator<Item = u32>) -> Self {
+        let ends = |id: u32| polyhedron.edges()[id as usize].vertices;
+        Self(ids.map(|id| (id, ends(id))).collect())
+    }
+
+    fn all(polyhedron: &ConvexPolyhedron) -> Self {
+        Self::of(polyhedron, 0..polyhedron.edges().len() as u32)
+    }
+
+    /// Whether a polyhedron with the same points has the same hull.
+    #[inline]
+    pub fn are_of(&self, polyhedron: &ConvexPolyhedron) -> bool {
+        self.0.is_empty() || self.are_among_edges_of(polyhedron)
+    }
+
+    #[inline(never)]
+    fn are_among_edges_of(&self, polyhedron: &ConvexPolyhedron) -> bool {
+        let edges = polyhedron.edges();
+        self.0.iter().all(|&(id, ends)| {
+            let edge = edges.get(id as usize);
+            edge.is_some_and(|edge| edge.vertices == ends)
+        })
+    }
+
+    pub fn heap_bytes(&self) -> usize {
+        size_of_val(&*self.0)
+    }
+}
+
+/// Whether two polyhedra have the same points and edges, so that their hulls are the same.
+pub(crate) fn same_polyhedron(a: &ConvexPolyhedron, b: &ConvexPolyhedron) -> bool {
+    let [edges_a, edges_b] = [a, b].map(|p| p.edges().iter().map(|edge| edge.vertices));
+    same_points(a.points(), b.points()) && edges_a.eq(edges_b)
+}
+
+/// Whether two lists of points are the same bit by bit: one comparison of memory.
+#[inline]
+pub(crate) fn same_points(a: &[Vec3], b: &[Vec3]) -> bool {
+    bytemuck::cast_slice::<Vec3, u8>(a) == bytemuck::cast_slice::<Vec3, u8>(b)
+}
+
+/// The triangles of a polyhedron, counter-clockwise from outside; `None` if they cannot be told.
+pub(crate) fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
+    Some(Triangulation::of(polyhedron)?.triangles)
+}
+
+/// A triangulated surface.
+struct Triangulation {
+    triangles: Vec<[u32; 3]>,
+    /// The edges across which it hardly bends.
+    flat_edges: Vec<u32>,
+    /// Around a point inside.
+    radius: f64,
+}
+
+impl Triangulation {
+    fn of(polyhedron: &ConvexPolyhedron) -> Option<Self> {
+        let (points, edges) = (polyhedron.points(), polyhedron.edges());
+        if points.iter().any(|p| !p.is_finite()) {
+            return None;
+        }
+        let inside = points.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / points.len() as f64;
+        let squares = points.iter().map(|p| p.as_dvec3().distance_squared(inside));
+        let radius = squares.fold(0.0, f64::max).sqrt();
+        let flatness = FLAT_EDGE * radius;
+        let (first, rows) = edge_rows(points.len(), polyhedron);
+        let mut triangles = Vec::with_capacity(2 * points.len());
+        let mut flat_edges = Vec::new();
+        let mut incident = Vec::new();
+        for v in 0..points.len() {
+            let here = points[v].as_dvec3();
+            let outward = (here - inside).try_normalize()?;
+            let (x, y) = outward.any_orthonormal_pair();
+            // Turn counter-clockwise about `outward`, whatever the handedness of the pair.
+            let y = if x.cross(y).dot(outward) > 0.0 { y } else { -y };
+            let v = v as u32;
+            incident.clear();
+            incident.extend(
+                rows[first[v as usize]..first[v as usize + 1]]
+                    .iter()
+                    .map(|&id| {
+                        let [a, b] = edges[id as usize].vertices;
+                        let end = a ^ b ^ v;
+                        let edge = points[end as usize].as_dvec3() - here;
+                        let seen = DVec2::new(edge.dot(x), edge.dot(y));
+                        IncidentEdge {
+                            id,
+                            end,
+                            edge,
+                            seen,
+                        }
+                    }),
+            );
+            incident.sort_unstable_by(|a, b| by_angle(a.seen, b.seen));
+            for (i, side) in incident.iter().enumerate() {
+                let next = &incident[(i + 1) % incident.len()];
+                // Each triangle is met at all of its corners: keep it at the lowest.
+                if v < side.end && v < next.end {
+                    triangles.push([v, side.end, next.end]);
+                }
+                let last = &incident[(i + incident.len() - 1) % incident.len()];
+                if v < side.end && is_flat([last.edge, side.edge, next.edge], flatness) {
+                    flat_edges.push(side.id);
+                }
+            }
+        }
+        Some(Self {
+            triangles,
+            flat_edges,
+            radius,
+        })
+    }
+
+    /// The hull over diagonals that depend on the points only, where all flat edges are such.
+    fn with_own_diagonals(&self, points: &[Vec3]) -> Option<Hull> {
+        if self.flat_edges.is_empty() {
+            return None;
+        }
+        let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
+        let triangles = flat_sides::retriangulated(&exact, &self.triangles, self.radius)?;
+        Hull::from_reordered_triangles(points.to_vec(), &triangles).ok()
+    }
+}
+
+/// An edge as seen from one of its ends.
+struct IncidentEdge {
+    id: u32,
+    /// The other end.
+    end: u32,
+    edge: DVec3,
+    /// From outside.
+    seen: DVec2,
+}
+
+/// Whether the surface bends at the second of three successive edges at a vertex by less than a height.
+fn is_flat([last, edge, next]: [DVec3; 3], height: f64) -> bool {
+    let (before, after) = (last.cross(edge), edge.cross(next));
+    let area = before.length_squared().max(after.length_squared()).sqrt();
+    before.dot(next).abs() <= height * area
+}
+
+/// Compressed rows of the edges at each vertex.
+fn edge_rows(count: usize, polyhedron: &ConvexPolyhedron) -> (Vec<usize>, Vec<u32>) {
+    let mut first = vec![0; count + 1];
+    for edge in polyhedron.edges() {
+        for v in edge.vertices {
+            first[v as usize + 1] += 1;
+        }
+    }
+    for v in 0..count {
+        first[v + 1] += first[v];
+    }
+    let mut fill = first.clone();
+    let mut rows = vec![0; first[count]];
+    for (id, edge) in polyhedron.edges().iter().enumerate() {
+        for v in edge.vertices {
+            rows[fill[v as usize]] = id as u32;
+            fill[v as usize] += 1;
+        }
+    }
+    (first, rows)
+}
+
+/// Counter-clockwise from the positive x axis.
+fn by_angle(a: DVec2, b: DVec2) -> Ordering {
+    let lower = |p: DVec2| p.y < 0.0 || (p.y == 0.0 && p.x < 0.0);
+    lower(a)
+        .cmp(&lower(b))
+        .then_with(|| 0.0_f64.total_cmp(&a.perp_dot(b)))
+}

@@ -1,0 +1,150 @@
+//! The contact plane: as each shape sees it, and faces over it.
+
+use glam::{DVec3, Vec2, Vec3};
+use wide::f32x4;
+
+use super::polygon::LANES;
+use crate::map_pair::map_pair;
+use crate::pose::RelativePose;
+use crate::support::{FaceId, Polytope};
+use crate::tuning::EDGE_ON;
+
+/// The contact plane as a shape sees it. Its origin is the witness point of shape 1.
+pub(super) struct ContactFrame {
+    origin: DVec3,
+    pub normal: DVec3,
+    axes: [DVec3; 2],
+}
+
+impl ContactFrame {
+    #[inline(always)]
+    pub fn new(origin: DVec3, normal: DVec3) -> Self {
+        let u = normal.any_orthonormal_vector();
+        Self {
+            origin,
+            normal,
+            axes: [u, normal.cross(u)],
+        }
+    }
+
+    /// The same plane in the frame of shape 2.
+    #[inline(always)]
+    pub fn in_frame_2(&self, pose: &RelativePose) -> Self {
+        Self {
+            origin: pose.point_to_2(self.origin),
+            normal: pose.direction_to_2(self.normal),
+            axes: map_pair(self.axes, |axis| pose.direction_to_2(axis)),
+        }
+    }
+
+    /// The plane of a face whose outward normal is along the contact normal, times `sign`; none if it is
+    /// seen from behind or edge-on.
+    #[inline(always)]
+    pub fn plane(&self, shape: &impl Polytope, face: FaceId, sign: f32) -> Option<FaceHeight> {
+        let (outward, offset) = self.plane_beyond_origin(shape, face, sign)?;
+        let along = outward.dot(self.normal);
+        let slope = |axis| (-outward.dot(axis) / along) as f32;
+        (along * f64::from(sign) > EDGE_ON).then(|| FaceHeight {
+            face,
+            base: (offset / along) as f32,
+            slope: Vec2::from(map_pair(self.axes, slope)),
+        })
+    }
+
+    /// The outward normal of a face, and how far beyond the origin its plane is. A segment has that of
+    /// its planes which leans least against the contact normal; a point has none.
+    #[inline(always)]
+    fn plane_beyond_origin(
+        &self,
+        shape: &impl Polytope,
+        face: FaceId,
+        sign: f32,
+    ) -> Option<(DVec3, f64)> {
+        match shape.face_len(face) {
+            1 => None,
+            2 => {
+                let [from, to] = map_pair([0, 1], |i| shape.vertex(shape.face_vertex(face, i)));
+                let along = (to - from).try_normalize()?;
+                let across = self.normal - along * along.dot(self.normal);
+                let outward = (across * f64::from(sign)).try_normalize()?;
+                Some((outward, outward.dot(from - self.origin)))
+            }
+            _ => {
+                let outward = shape.face_normal(face);
+                Some((outward, shape.face_offset(face) - outward.dot(self.origin)))
+            }
+        }
+    }
+
+    #[inline(always)]
+    pub fn projection(&self) -> PlaneProjection {
+        let origin = self.origin.as_vec3();
+        PlaneProjection {
+            origin,
+            rest: (self.origin - origin.as_dvec3()).as_vec3(),
+            normal: self.normal.as_vec3(),
+            axes: map_pair(self.axes, |axis| axis.as_vec3()),
+        }
+    }
+}
+
+/// Between a shape's space and the contact plane, in f32: beside the witness coordinates are small, and
+/// errors are no larger than those of f32 vertices.
+pub(super) struct PlaneProjection {
+    /// The plane's origin in two parts: what f32 holds of it, and the rest. So what is near loses
+    /// nothing where the shape is large.
+    origin: Vec3,
+    rest: Vec3,
+    normal: Vec3,
+    axes: [Vec3; 2],
+}
+
+impl PlaneProjection {
+    /// Four points into the plane, coordinate by coordinate.
+    #[inline(always)]
+    pub fn flatten(&self, points: [Vec3; LANES]) -> [f32x4; 2] {
+        let [a, b, c, d] = points;
+        let from_origin = |p: [f32; LANES], origin: f32, rest: f32| f32x4::new(p) - origin - rest;
+        let x = from_origin([a.x, b.x, c.x, d.x], self.origin.x, self.rest.x);
+        let y = from_origin([a.y, b.y, c.y, d.y], self.origin.y, self.rest.y);
+        let z = from_origin([a.z, b.z, c.z, d.z], self.origin.z, self.rest.z);
+        map_pair(self.axes, |axis| x * axis.x + y * axis.y + z * axis.z)
+    }
+
+    /// The points over places in the plane.
+    #[inline(always)]
+    pub fn points(&self, x: f32x4, y: f32x4, height: f32x4) -> [f32x4; 3] {
+        let [u, v] = self.axes;
+        let coordinate = |axis: usize| {
+            let from_origin = x * u[axis] + y * v[axis] + height * self.normal[axis];
+            from_origin + self.rest[axis] + self.origin[axis]
+        };
+        [coordinate(0), coordinate(1), coordinate(2)]
+    }
+}
+
+/// The plane of a face over the contact plane: `height(x) = base + slope · x` along the normal.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FaceHeight {
+    pub face: FaceId,
+    base: f32,
+    slope: Vec2,
+}
+
+impl FaceHeight {
+    #[inline(always)]
+    pub fn heights(&self, x: f32x4, y: f32x4) -> f32x4 {
+        x * self.slope.x + y * self.slope.y + self.base
+    }
+
+    #[inline(always)]
+    pub fn height(&self, at: Vec2) -> f32 {
+        at.x * self.slope.x + at.y * self.slope.y + self.base
+    }
+
+    /// The tangent squared of its angle to the contact plane.
+    #[inline(always)]
+    pub fn slope_squared(&self) -> f32 {
+        self.slope.length_squared()
+    }
+}

@@ -1,0 +1,94 @@
+//! Contacts of compounds.
+//!
+//! Parry's routine for these pairs scans all points of each part for its bounding box, moves every
+//! manifold, and looks each one up in a hash table: for parts of sixty points more work than our
+//! queries. Here the boxes are those that the compound keeps, and manifolds stay where they are.
+
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::math::Pose;
+use parry3d::shape::{Compound, Shape};
+
+use crate::parry::composite::sub_manifolds::{SubManifolds, SubShape};
+use crate::parry::constraints::Constraints;
+use crate::parry::hull_cache::LastProved;
+use crate::parry::pair::Operand;
+
+/// Of a compound with more parts than this, some prove their hulls more than once.
+const PROOFS: usize = 8;
+
+/// Two compounds.
+pub(crate) fn compounds<M, C>(
+    mut sub_manifolds: SubManifolds<'_, M, C>,
+    pos12: &Pose,
+    [c1, c2]: [&Compound; 2],
+) where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    let pos21 = pos12.inverse();
+    let mut proved_2 = [LastProved::default(); PROOFS];
+    let whole_2 = c2
+        .local_aabb()
+        .transform_by(pos12)
+        .loosened(sub_manifolds.prediction);
+    for i in c1.bvh().intersect_aabb(&whole_2) {
+        let mut part_1 = part(c1, i, LastProved::default());
+        let near_1 = c1.aabbs()[i as usize].loosened(sub_manifolds.prediction);
+        let pos_part1_2 = c1.shapes()[i as usize].0.inv_mul(pos12);
+        for k in c2.bvh().intersect_aabb(&near_1.transform_by(&pos21)) {
+            // Boxes around turned boxes are large: the other way round many are apart.
+            if !box_in(c2, k, pos12).intersects(&near_1) {
+                continue;
+            }
+            let proved = &mut proved_2[k as usize % PROOFS];
+            let mut part_2 = part(c2, k, *proved);
+            let pos12 = pos_part1_2 * c2.shapes()[k as usize].0;
+            sub_manifolds.update_pair(&pos12, &mut part_1, &mut part_2);
+            *proved = part_2.operand.find;
+        }
+    }
+    sub_manifolds.finish();
+}
+
+/// A compound and a convex shape; the convex one is the first if `swapped`.
+pub(crate) fn compound_and_convex<M, C>(
+    mut sub_manifolds: SubManifolds<'_, M, C>,
+    pos12: &Pose,
+    compound: &Compound,
+    convex: &dyn Shape,
+    swapped: bool,
+) where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    let place = if swapped { pos12.inverse() } else { *pos12 };
+    let whole = convex
+        .compute_aabb(&place)
+        .loosened(sub_manifolds.prediction);
+    let mut whole_part = SubShape::whole(convex);
+    for i in compound.bvh().intersect_aabb(&whole) {
+        let mut part = part(compound, i, LastProved::default());
+        let pos = &compound.shapes()[i as usize].0;
+        if swapped {
+            sub_manifolds.update_pair(&(pos12 * pos), &mut whole_part, &mut part);
+        } else {
+            sub_manifolds.update_pair(&pos.inv_mul(pos12), &mut part, &mut whole_part);
+        }
+    }
+    sub_manifolds.finish();
+}
+
+fn box_in(compound: &Compound, part: u32, pose: &Pose) -> Aabb {
+    compound.aabbs()[part as usize].transform_by(pose)
+}
+
+fn part<'a>(compound: &'a Compound, id: u32, proved: LastProved<'a>) -> SubShape<'a> {
+    let (pos, shape) = &compound.shapes()[id as usize];
+    let constraints = compound.part_normal_constraints(id);
+    SubShape {
+        id,
+        operand: Operand::new(&**shape, proved),
+        pos: Some(*pos),
+        constraints: constraints.map_or(Constraints::None, Constraints::OfPart),
+    }
+}

@@ -1,0 +1,94 @@
+//! Contacts of hulls with triangle meshes and height fields.
+//!
+//! Parry's routines compute the pseudo-normals of every triangle nearby, most of which have no
+//! contact, and move the manifolds of a height field from frame to frame through a hash table.
+//! Here normals are computed where there is a contact to correct, and manifolds stay where they
+//! are.
+
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::math::Pose;
+use parry3d::shape::{
+    HeightField, HeightFieldFlags, Shape, TriMesh, TriMeshFlags, Triangle, TrianglePseudoNormals,
+};
+
+use crate::parry::composite::sub_manifolds::{SubManifolds, SubShape};
+use crate::parry::constraints::Constraints;
+use crate::parry::hull_cache::LastProved;
+use crate::parry::pair::Operand;
+
+/// A shape made of triangles.
+#[derive(Clone, Copy)]
+pub(crate) enum Triangles<'a> {
+    Mesh(&'a TriMesh),
+    Field(&'a HeightField),
+}
+
+impl<'a> Triangles<'a> {
+    pub fn of(shape: &'a dyn Shape) -> Option<Self> {
+        let mesh = shape.as_trimesh().map(Self::Mesh);
+        mesh.or_else(|| shape.as_heightfield().map(Self::Field))
+    }
+
+    /// Hands those whose boxes meet a box to `f`, always in the same order.
+    fn each_near(self, aabb: &Aabb, mut f: impl FnMut(u32, &Triangle)) {
+        match self {
+            Self::Mesh(mesh) => {
+                for id in mesh.bvh().intersect_aabb(aabb) {
+                    f(id, &mesh.triangle(id));
+                }
+            }
+            Self::Field(field) => field.map_elements_in_local_aabb(aabb, &mut f),
+        }
+    }
+
+    /// Whether the normals of its contacts are corrected.
+    fn is_flagged(self) -> bool {
+        match self {
+            Self::Mesh(mesh) => mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES),
+            Self::Field(field) => field.flags().contains(HeightFieldFlags::FIX_INTERNAL_EDGES),
+        }
+    }
+
+    fn normals(self, id: u32) -> Option<TrianglePseudoNormals> {
+        match self {
+            Self::Mesh(mesh) => mesh.triangle_normal_constraints(id),
+            Self::Field(field) => field.triangle_normal_constraints(id),
+        }
+    }
+}
+
+/// A shape made of triangles and a hull; the hull is the first if `swapped`.
+pub(crate) fn triangles_and_hull<M, C>(
+    mut sub_manifolds: SubManifolds<'_, M, C>,
+    pos12: &Pose,
+    triangles: Triangles<'_>,
+    hull: &dyn Shape,
+    swapped: bool,
+) where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    let place = if swapped { pos12.inverse() } else { *pos12 };
+    let near = hull.compute_aabb(&place).loosened(sub_manifolds.prediction);
+    let mut hull = SubShape::whole(hull);
+    let is_flagged = triangles.is_flagged();
+    triangles.each_near(&near, |id, triangle| {
+        let normals = || triangles.normals(id);
+        let mut part = SubShape {
+            id,
+            operand: Operand::new(triangle, LastProved::default()),
+            pos: None,
+            constraints: if is_flagged {
+                Constraints::OfTriangle(&normals)
+            } else {
+                Constraints::None
+            },
+        };
+        if swapped {
+            sub_manifolds.update_pair(pos12, &mut hull, &mut part);
+        } else {
+            sub_manifolds.update_pair(pos12, &mut part, &mut hull);
+        }
+    });
+    sub_manifolds.finish();
+}

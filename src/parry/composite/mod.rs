@@ -1,0 +1,197 @@
+//! Composite shapes: our routines take compounds apart, and meshes that meet a hull; parry's routines
+//! do the rest. Either way *we* are asked about the parts.
+//!
+//! Parry's own dispatcher hands itself to those routines, so that a dispatcher chained in front
+//! of it never sees the hulls inside of compounds, meshes, height fields and voxels.
+
+use parry3d::math::{Pose, Real};
+use parry3d::query::details::{
+    ContactManifoldsWorkspace, VoxelsShapeContactManifoldsWorkspace,
+    contact_manifolds_composite_shape_composite_shape, contact_manifolds_composite_shape_shape,
+    contact_manifolds_heightfield_composite_shape, contact_manifolds_heightfield_shape_shapes,
+    contact_manifolds_trimesh_shape_shapes, contact_manifolds_voxels_ball_shapes,
+    contact_manifolds_voxels_composite_shape_shapes, contact_manifolds_voxels_shape_shapes,
+    contact_manifolds_voxels_voxels_shapes,
+};
+use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
+use parry3d::shape::{Shape, ShapeType};
+
+mod compound;
+mod mesh;
+pub(crate) mod scene;
+mod sub_manifolds;
+
+use crate::parry::dispatcher::IsaGjkDispatcher;
+use crate::parry::pair;
+use mesh::Triangles;
+use sub_manifolds::SubManifolds;
+
+/// Updates the manifolds of a pair in which a shape has parts. `false` if none has.
+pub(crate) fn contact_manifolds<M, C>(
+    dispatcher: &IsaGjkDispatcher,
+    pos12: &Pose,
+    shapes: [&dyn Shape; 2],
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) -> bool
+where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    use ShapeType::{Ball, HeightField, TriMesh, Voxels};
+    // Parry's routines assert that boxes are not loosened by less than nothing.
+    let prediction = prediction.max(0.0);
+    let [s1, s2] = shapes;
+    if by_us(dispatcher, pos12, shapes, prediction, manifolds, workspace) {
+        return true;
+    }
+    let composites = [s1.as_composite_shape(), s2.as_composite_shape()];
+    if let [Some(c1), Some(c2)] = composites {
+        contact_manifolds_composite_shape_composite_shape(
+            dispatcher, pos12, c1, c2, prediction, manifolds, workspace,
+        );
+        return true;
+    }
+    match [s1.shape_type(), s2.shape_type()] {
+        [TriMesh, _] | [_, TriMesh] => contact_manifolds_trimesh_shape_shapes(
+            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
+        ),
+        [HeightField, _] | [_, HeightField] => {
+            height_field(dispatcher, pos12, shapes, prediction, manifolds, workspace)
+        }
+        [Voxels, Voxels] => contact_manifolds_voxels_voxels_shapes(
+            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
+        ),
+        [Voxels, Ball] | [Ball, Voxels] => {
+            contact_manifolds_voxels_ball_shapes(pos12, s1, s2, prediction, manifolds);
+            // Parry forgets it.
+            *workspace = Some(empty_workspace());
+        }
+        [Voxels, _] | [_, Voxels] if composites.iter().any(Option::is_some) => {
+            contact_manifolds_voxels_composite_shape_shapes(
+                dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
+            );
+        }
+        [Voxels, _] | [_, Voxels] => contact_manifolds_voxels_shape_shapes(
+            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
+        ),
+        _ => match composites {
+            [Some(c1), _] => contact_manifolds_composite_shape_shape(
+                dispatcher, pos12, c1, s2, prediction, manifolds, workspace, false,
+            ),
+            [_, Some(c2)] => contact_manifolds_composite_shape_shape(
+                dispatcher,
+                &pos12.inverse(),
+                c2,
+                s1,
+                prediction,
+                manifolds,
+                workspace,
+                true,
+            ),
+            _ => return false,
+        },
+    }
+    true
+}
+
+/// What rapier knows a pair by whose manifolds come and go: it enters them in its solver graph
+/// anew. An empty workspace of the type that parry uses for voxels: it can be saved and loaded,
+/// and parry's routines for other pairs see that it is not theirs.
+pub(crate) fn empty_workspace() -> ContactManifoldsWorkspace {
+    VoxelsShapeContactManifoldsWorkspace::<2>::new().into()
+}
+
+/// Leaves the one manifold that a pair of convex shapes has. If a shape had parts until now, the
+/// manifolds of its parts are still there, and rapier must notice that they go.
+pub(crate) fn reset_to_single<M: Default + Clone, C: Default + Copy>(
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) {
+    let is_of_whole = |manifold: &ContactManifold<M, C>| {
+        manifold.subshape_poses.is_none() && [manifold.subshape1, manifold.subshape2] == [0, 0]
+    };
+    if let [manifold] = &manifolds[..]
+        && is_of_whole(manifold)
+    {
+        *workspace = None;
+        return;
+    }
+    *workspace = (!manifolds.is_empty()).then(empty_workspace);
+    manifolds.clear();
+    // A first push would make room for four, and rapier goes through all pairs in every frame: what
+    // lies densely is waited for less.
+    manifolds.reserve_exact(1);
+    manifolds.push(ContactManifold::with_data(0, 0, M::default()));
+}
+
+/// A compound against another one or a convex shape, or a hull against a shape made of triangles.
+/// `false` for other pairs.
+///
+/// Compounds are ours whether or not they have a hull: to find out would take a look at every part in
+/// every update, however few of them are near.
+fn by_us<M, C>(
+    dispatcher: &IsaGjkDispatcher,
+    pos12: &Pose,
+    [s1, s2]: [&dyn Shape; 2],
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) -> bool
+where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    let begin =
+        |manifolds, workspace| SubManifolds::new(dispatcher, prediction, manifolds, workspace);
+    if let [Some(c1), Some(c2)] = [s1.as_compound(), s2.as_compound()] {
+        compound::compounds(begin(manifolds, workspace), pos12, [c1, c2]);
+        return true;
+    }
+    for (first, second, swapped) in [(s1, s2, false), (s2, s1, true)] {
+        if let Some(compound) = first.as_compound()
+            && second.is_convex()
+        {
+            let sub_manifolds = begin(manifolds, workspace);
+            compound::compound_and_convex(sub_manifolds, pos12, compound, second, swapped);
+            return true;
+        }
+        if let Some(triangles) = Triangles::of(first)
+            && pair::is_hull(second)
+        {
+            let sub_manifolds = begin(manifolds, workspace);
+            mesh::triangles_and_hull(sub_manifolds, pos12, triangles, second, swapped);
+            return true;
+        }
+    }
+    false
+}
+
+/// A height field against anything; one of the shapes is one.
+fn height_field<M, C>(
+    dispatcher: &dyn PersistentQueryDispatcher<M, C>,
+    pos12: &Pose,
+    [s1, s2]: [&dyn Shape; 2],
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    let pos21 = pos12.inverse();
+    if let (Some(field), Some(other)) = (s1.as_heightfield(), s2.as_composite_shape()) {
+        contact_manifolds_heightfield_composite_shape(
+            dispatcher, pos12, &pos21, field, other, prediction, manifolds, workspace, false,
+        );
+    } else if let (Some(other), Some(field)) = (s1.as_composite_shape(), s2.as_heightfield()) {
+        contact_manifolds_heightfield_composite_shape(
+            dispatcher, &pos21, pos12, field, other, prediction, manifolds, workspace, true,
+        );
+    } else {
+        contact_manifolds_heightfield_shape_shapes(
+            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
+        );
+    }
+}

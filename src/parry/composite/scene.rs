@@ -1,0 +1,167 @@
+//! Scene queries against shapes with parts: parry's routines pick the parts, and ask *us* about
+//! them. The order of cases is that of parry's own dispatcher; `None` where it has no such case.
+//! Negative distances become zero: the routines assert that they are not.
+
+use parry3d::math::{Pose, Real, Vector};
+use parry3d::query::details::{
+    NonlinearShapeCastMode, cast_shapes_composite_shape_shape, cast_shapes_heightfield_shape,
+    cast_shapes_nonlinear_composite_shape_shape, cast_shapes_nonlinear_shape_composite_shape,
+    cast_shapes_nonlinear_shape_voxels, cast_shapes_nonlinear_support_map_support_map,
+    cast_shapes_nonlinear_voxels_shape, cast_shapes_shape_composite_shape,
+    cast_shapes_shape_heightfield, cast_shapes_shape_voxels, cast_shapes_voxels_shape,
+    closest_points_composite_shape_shape, closest_points_shape_composite_shape,
+    contact_composite_shape_shape, contact_heightfield_shape, contact_shape_composite_shape,
+    contact_shape_heightfield, distance_composite_shape_shape, distance_shape_composite_shape,
+    intersection_test_composite_shape_shape, intersection_test_shape_composite_shape,
+    intersection_test_shape_voxels, intersection_test_voxels_shape,
+};
+use parry3d::query::{
+    ClosestPoints, Contact, NonlinearRigidMotion, ShapeCastHit, ShapeCastOptions, ShapeDistance,
+    ShapeIntersection, Unsupported,
+};
+use parry3d::shape::{Shape, ShapeType};
+
+use crate::parry::dispatcher::IsaGjkDispatcher;
+
+pub(crate) fn intersection_test(
+    us: &IsaGjkDispatcher,
+    pos12: &Pose,
+    g1: &dyn Shape,
+    g2: &dyn Shape,
+) -> Option<ShapeIntersection> {
+    // Parry projects the centre of a ball on the whole shape.
+    if [g1, g2].iter().any(|g| g.shape_type() == ShapeType::Ball) {
+        return None;
+    }
+    if let Some(c1) = g1.as_composite_shape() {
+        Some(intersection_test_composite_shape_shape(us, pos12, c1, g2))
+    } else if let Some(c2) = g2.as_composite_shape() {
+        Some(intersection_test_shape_composite_shape(us, pos12, g1, c2))
+    } else if let Some(v1) = g1.as_voxels() {
+        Some(intersection_test_voxels_shape(us, pos12, v1, g2))
+    } else {
+        let v2 = g2.as_voxels()?;
+        Some(intersection_test_shape_voxels(us, pos12, g1, v2))
+    }
+}
+
+pub(crate) fn distance(
+    us: &IsaGjkDispatcher,
+    pos12: &Pose,
+    g1: &dyn Shape,
+    g2: &dyn Shape,
+) -> Option<ShapeDistance> {
+    if let Some(c1) = g1.as_composite_shape() {
+        Some(distance_composite_shape_shape(us, pos12, c1, g2))
+    } else {
+        let c2 = g2.as_composite_shape()?;
+        Some(distance_shape_composite_shape(us, pos12, g1, c2))
+    }
+}
+
+pub(crate) fn contact(
+    us: &IsaGjkDispatcher,
+    pos12: &Pose,
+    g1: &dyn Shape,
+    g2: &dyn Shape,
+    prediction: Real,
+) -> Option<Option<Contact>> {
+    let prediction = prediction.max(0.0);
+    Some(if let Some(h1) = g1.as_heightfield() {
+        contact_heightfield_shape(us, pos12, h1, g2, prediction)
+    } else if let Some(h2) = g2.as_heightfield() {
+        contact_shape_heightfield(us, pos12, g1, h2, prediction)
+    } else if let Some(c1) = g1.as_composite_shape() {
+        contact_composite_shape_shape(us, pos12, c1, g2, prediction)
+    } else {
+        let c2 = g2.as_composite_shape()?;
+        contact_shape_composite_shape(us, pos12, g1, c2, prediction)
+    })
+}
+
+pub(crate) fn closest_points(
+    us: &IsaGjkDispatcher,
+    pos12: &Pose,
+    g1: &dyn Shape,
+    g2: &dyn Shape,
+    max_dist: Real,
+) -> Option<ClosestPoints> {
+    Some(if let Some(c1) = g1.as_composite_shape() {
+        closest_points_composite_shape_shape(us, pos12, c1, g2, max_dist)
+    } else {
+        let c2 = g2.as_composite_shape()?;
+        closest_points_shape_composite_shape(us, pos12, g1, c2, max_dist)
+    })
+}
+
+pub(crate) fn cast_shapes(
+    us: &IsaGjkDispatcher,
+    pos12: &Pose,
+    velocity: Vector,
+    g1: &dyn Shape,
+    g2: &dyn Shape,
+    mut options: ShapeCastOptions,
+) -> Option<Result<Option<ShapeCastHit>, Unsupported>> {
+    options.target_distance = options.target_distance.max(0.0);
+    if let Some(h1) = g1.as_heightfield() {
+        return Some(cast_shapes_heightfield_shape(
+            us, pos12, velocity, h1, g2, options,
+        ));
+    }
+    if let Some(h2) = g2.as_heightfield() {
+        return Some(cast_shapes_shape_heightfield(
+            us, pos12, velocity, g1, h2, options,
+        ));
+    }
+    Some(Ok(if let Some(c1) = g1.as_composite_shape() {
+        cast_shapes_composite_shape_shape(us, pos12, velocity, c1, g2, options)
+    } else if let Some(c2) = g2.as_composite_shape() {
+        cast_shapes_shape_composite_shape(us, pos12, velocity, g1, c2, options)
+    } else if let Some(v1) = g1.as_voxels() {
+        cast_shapes_voxels_shape(us, pos12, velocity, v1, g2, options)
+    } else {
+        let v2 = g2.as_voxels()?;
+        cast_shapes_shape_voxels(us, pos12, velocity, g1, v2, options)
+    }))
+}
+
+/// A shape on its way, with rotation.
+#[derive(Clone, Copy)]
+pub(crate) struct MovingShape<'a> {
+    pub motion: &'a NonlinearRigidMotion,
+    pub shape: &'a dyn Shape,
+}
+
+/// Also of two convex shapes: parry's search for the time of impact asks us how far they are
+/// apart, wherever it looks.
+pub(crate) fn cast_shapes_nonlinear(
+    us: &IsaGjkDispatcher,
+    movers: [MovingShape<'_>; 2],
+    [start, end]: [Real; 2],
+    stop_at_penetration: bool,
+) -> Option<Option<ShapeCastHit>> {
+    let stop = stop_at_penetration;
+    let [m1, m2] = movers.map(|mover| mover.motion);
+    let [g1, g2] = movers.map(|mover| mover.shape);
+    Some(
+        if let (Some(s1), Some(s2)) = (g1.as_support_map(), g2.as_support_map()) {
+            let mode = if stop {
+                NonlinearShapeCastMode::StopAtPenetration
+            } else {
+                NonlinearShapeCastMode::directional_toi(g1, g2)
+            };
+            cast_shapes_nonlinear_support_map_support_map(
+                us, m1, s1, g1, m2, s2, g2, start, end, mode,
+            )
+        } else if let Some(c1) = g1.as_composite_shape() {
+            cast_shapes_nonlinear_composite_shape_shape(us, m1, c1, m2, g2, start, end, stop)
+        } else if let Some(c2) = g2.as_composite_shape() {
+            cast_shapes_nonlinear_shape_composite_shape(us, m1, g1, m2, c2, start, end, stop)
+        } else if let Some(v1) = g1.as_voxels() {
+            cast_shapes_nonlinear_voxels_shape(us, m1, v1, m2, g2, start, end, stop)
+        } else {
+            let v2 = g2.as_voxels()?;
+            cast_shapes_nonlinear_shape_voxels(us, m1, g1, m2, v2, start, end, stop)
+        },
+    )
+}

@@ -1,0 +1,178 @@
+//! The manifolds of a pair with parts: one for each two parts that may meet.
+//!
+//! They stay where they are, found by the parts they name. The workspace holds nothing. Rapier
+//! wants one of pairs with many manifolds, and drops it when a shape changes. Parry's routines, if
+//! the pair comes back to them, see that it is not theirs, and begin anew.
+
+use parry3d::math::{Pose, Real};
+use parry3d::query::details::ContactManifoldsWorkspace;
+use parry3d::query::{ContactManifold, TypedWorkspaceData};
+use parry3d::shape::Shape;
+
+use crate::parry::composite;
+use crate::parry::constraints::Constraints;
+use crate::parry::dispatcher::IsaGjkDispatcher;
+use crate::parry::hull_cache::LastProved;
+use crate::parry::int_hash::IntMap;
+use crate::parry::pair::Operand;
+
+/// A convex part, or a convex whole.
+pub(crate) struct SubShape<'a> {
+    /// Its number; 0 for a whole.
+    pub id: u32,
+    pub operand: Operand<'a, LastProved<'a>>,
+    /// Where it is in the compound.
+    pub pos: Option<Pose>,
+    pub constraints: Constraints<'a>,
+}
+
+impl<'a> SubShape<'a> {
+    pub fn whole(shape: &'a dyn Shape) -> Self {
+        Self {
+            id: 0,
+            operand: Operand::new(shape, LastProved::default()),
+            pos: None,
+            constraints: Constraints::None,
+        }
+    }
+}
+
+/// The manifolds of a pair, while they are brought up to date.
+pub(crate) struct SubManifolds<'a, M, C> {
+    dispatcher: &'a IsaGjkDispatcher,
+    pub prediction: Real,
+    manifolds: &'a mut Vec<ContactManifold<M, C>>,
+    /// How many of them are of this frame; those of parts that meet no more come behind.
+    done: usize,
+    /// How many have been looked at in search of one.
+    searched: usize,
+    /// Where those behind `done` are, once searching has become more work than this.
+    places: Option<IntMap<u64, usize>>,
+}
+
+/// An update may look at every manifold this many times before it makes a map of them.
+const SEARCHES: usize = 2;
+
+/// By which the manifold of two parts is found.
+fn key(part_1: u32, part_2: u32) -> u64 {
+    u64::from(part_1) << 32 | u64::from(part_2)
+}
+
+impl<'a, M, C> SubManifolds<'a, M, C>
+where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    /// Our workspace, or one of parry's routines for such pairs, says that the manifolds are of
+    /// these shapes. Without it they may be of shapes that were here before.
+    pub fn new(
+        dispatcher: &'a IsaGjkDispatcher,
+        prediction: Real,
+        manifolds: &'a mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Self {
+        use TypedWorkspaceData::{
+            CompositeShapeCompositeShapeContactManifoldsWorkspace as OfTwo,
+            CompositeShapeShapeContactManifoldsWorkspace as OfOne,
+            HeightfieldShapeContactManifoldsWorkspace as OfField,
+            TriMeshShapeContactManifoldsWorkspace as OfMesh,
+            VoxelsShapeContactManifoldsWorkspace as Ours,
+        };
+        let known = workspace.as_ref();
+        match known.map(|workspace| workspace.0.as_typed_workspace_data()) {
+            Some(Ours(_)) => {}
+            parrys_or_none => {
+                let parrys = matches!(
+                    parrys_or_none,
+                    Some(OfOne(_) | OfTwo(_) | OfField(_) | OfMesh(_))
+                );
+                if !parrys {
+                    manifolds.clear();
+                }
+                *workspace = Some(composite::empty_workspace());
+            }
+        }
+        Self {
+            dispatcher,
+            prediction,
+            manifolds,
+            done: 0,
+            searched: 0,
+            places: None,
+        }
+    }
+
+    /// Two parts, the second at `pos12` in the frame of the first.
+    pub fn update_pair(
+        &mut self,
+        pos12: &Pose,
+        part_1: &mut SubShape<'_>,
+        part_2: &mut SubShape<'_>,
+    ) {
+        let manifold = self.manifold(part_1, part_2);
+        let constraints = [part_1.constraints, part_2.constraints];
+        // As parry's routines do: a pair that nobody supports has no contacts.
+        let _ = self.dispatcher.update_manifold(
+            pos12,
+            (part_1.operand.again(), part_2.operand.again()),
+            self.dispatcher.epochs.epoch(),
+            constraints,
+            self.prediction,
+            &mut self.manifolds[manifold],
+        );
+    }
+
+    /// Where the manifold of two parts is: mostly where it was, for parts come in the same order.
+    fn manifold(&mut self, part_1: &SubShape<'_>, part_2: &SubShape<'_>) -> usize {
+        let place = self.done;
+        let known = self.find(part_1.id, part_2.id);
+        let found = known.unwrap_or(self.manifolds.len());
+        if known.is_none() {
+            let mut manifold = ContactManifold::with_data(part_1.id, part_2.id, M::default());
+            manifold.set_subshape_pos1(part_1.pos);
+            manifold.set_subshape_pos2(part_2.pos);
+            self.manifolds.push(manifold);
+        }
+        if found != place {
+            self.manifolds.swap(place, found);
+            if let Some(places) = &mut self.places {
+                places.insert(Self::key_of(&self.manifolds[found]), found);
+            }
+        }
+        self.done += 1;
+        place
+    }
+
+    /// The manifold of two parts among those behind `done`.
+    fn find(&mut self, part_1: u32, part_2: u32) -> Option<usize> {
+        let key = key(part_1, part_2);
+        let is_wanted = |manifold: &ContactManifold<M, C>| Self::key_of(manifold) == key;
+        let rest = &self.manifolds[self.done..];
+        if rest.first().is_some_and(is_wanted) {
+            return Some(self.done);
+        }
+        if self.searched > SEARCHES * self.manifolds.len() {
+            return self.places().get(&key).copied();
+        }
+        let known = rest.iter().position(is_wanted);
+        self.searched += known.unwrap_or(rest.len());
+        known.map(|offset| self.done + offset)
+    }
+
+    fn places(&mut self) -> &IntMap<u64, usize> {
+        self.places.get_or_insert_with(|| {
+            let rest = self.manifolds.iter().enumerate().skip(self.done);
+            rest.map(|(i, manifold)| (Self::key_of(manifold), i))
+                .collect()
+        })
+    }
+
+    fn key_of(manifold: &ContactManifold<M, C>) -> u64 {
+        key(manifold.subshape1, manifold.subshape2)
+    }
+
+    /// Drops the manifolds of parts that meet no more.
+    pub fn finish(self) {
+        self.manifolds.truncate(self.done);
+    }
+}

@@ -1,0 +1,269 @@
+//! The plug: rapier's narrow phase asks [`IsaGjkDispatcher`] instead of parry's own dispatcher.
+
+use parry3d::math::{Pose, Real, Vector};
+use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints, ShapeCastOptions};
+use parry3d::query::{
+    ClosestPoints, Contact, ContactManifold, DefaultQueryDispatcher, NonlinearRigidMotion,
+    PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeDistance, ShapeIntersection,
+    Unsupported,
+};
+use parry3d::shape::Shape;
+
+use crate::parry::composite;
+use crate::parry::composite::scene::{self as parts, MovingShape};
+use crate::parry::constraints::Constraints;
+use crate::parry::hull_cache::Find;
+use crate::parry::hull_cache::epoch::{Epoch, EpochSource};
+use crate::parry::manifold::UpdateManifold;
+use crate::parry::pair::{self, Operand};
+use crate::parry::scene::{cast, separation as scene};
+use crate::stats::{SharedStats, Stats};
+
+/// A query dispatcher that answers pairs with a convex hull itself and passes every other pair
+/// on to parry's own. It also finds the parts of compounds that meet, whatever they are.
+///
+/// Give it to `NarrowPhase::with_query_dispatcher`, or to `set_query_dispatcher` of a world that
+/// runs already. Clones share their statistics.
+#[derive(Clone, Debug, Default)]
+pub struct IsaGjkDispatcher {
+    stats: SharedStats,
+    pub(crate) epochs: EpochSource,
+}
+
+impl IsaGjkDispatcher {
+    /// What the queries of this dispatcher and its clones have cost so far.
+    pub fn stats(&self) -> Stats {
+        self.stats.read()
+    }
+
+    /// Runs `step`, in which no collider's shape is changed, replaced or dropped: then a plain hull is
+    /// proved to be the prepared one in its first pair only, not in each.
+    ///
+    /// A step of a world is such a thing. The promise is for all shapes that the contacts of this
+    /// dispatcher and its clones are asked about meanwhile, in any thread; where it does not hold,
+    /// contacts may be those of the shape before. `HullShape`s need no such promise.
+    ///
+    /// ```
+    /// use isa_gjk::IsaGjkDispatcher;
+    /// use rapier3d::prelude::*;
+    ///
+    /// let dispatcher = IsaGjkDispatcher::default();
+    /// let mut world = PhysicsWorld {
+    ///     narrow_phase: NarrowPhase::with_query_dispatcher(dispatcher.clone()),
+    ///     ..PhysicsWorld::default()
+    /// };
+    /// dispatcher.with_unchanged_shapes(|| world.step());
+    /// ```
+    pub fn with_unchanged_shapes<R>(&self, step: impl FnOnce() -> R) -> R {
+        self.epochs.run(step)
+    }
+
+    /// Drops what all dispatchers have prepared of plain hulls, and the memory that queries work in: in
+    /// this thread now, in others before their next query.
+    ///
+    /// Hulls that are gone also go by themselves, but not at once: a thread keeps 32 MiB of them. Call
+    /// it when a level is over. It changes no answer; a hull that is still there is prepared again
+    /// when it is asked about next.
+    ///
+    /// ```
+    /// use isa_gjk::IsaGjkDispatcher;
+    /// use rapier3d::prelude::*;
+    ///
+    /// let dispatcher = IsaGjkDispatcher::default();
+    /// for _level in 0..2 {
+    ///     let mut world = PhysicsWorld {
+    ///         narrow_phase: NarrowPhase::with_query_dispatcher(dispatcher.clone()),
+    ///         ..PhysicsWorld::default()
+    ///     };
+    ///     world.step();
+    ///     drop(world);
+    ///     dispatcher.trim();
+    /// }
+    /// ```
+    pub fn trim(&self) {
+        pair::trim();
+    }
+}
+
+const PARRY: DefaultQueryDispatcher = DefaultQueryDispatcher;
+
+impl QueryDispatcher for IsaGjkDispatcher {
+    fn intersection_test(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<ShapeIntersection, Unsupported> {
+        if let Some(intersecting) = scene::intersect(pos12, g1, g2) {
+            return Ok(intersecting.into());
+        }
+        match parts::intersection_test(self, pos12, g1, g2) {
+            Some(intersection) => Ok(intersection),
+            None => PARRY.intersection_test(pos12, g1, g2),
+        }
+    }
+
+    fn distance(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<ShapeDistance, Unsupported> {
+        if let Some(distance) = scene::distance(pos12, g1, g2) {
+            return Ok(distance.into());
+        }
+        match parts::distance(self, pos12, g1, g2) {
+            Some(distance) => Ok(distance),
+            None => PARRY.distance(pos12, g1, g2),
+        }
+    }
+
+    fn contact(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+    ) -> Result<Option<Contact>, Unsupported> {
+        let ours = scene::contact(pos12, g1, g2, prediction);
+        match ours.or_else(|| parts::contact(self, pos12, g1, g2, prediction)) {
+            Some(contact) => Ok(contact),
+            None => PARRY.contact(pos12, g1, g2, prediction),
+        }
+    }
+
+    fn closest_points(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        max_dist: Real,
+    ) -> Result<ClosestPoints, Unsupported> {
+        let ours = scene::closest_points(pos12, g1, g2, max_dist);
+        match ours.or_else(|| parts::closest_points(self, pos12, g1, g2, max_dist)) {
+            Some(points) => Ok(points),
+            None => PARRY.closest_points(pos12, g1, g2, max_dist),
+        }
+    }
+
+    fn cast_shapes(
+        &self,
+        pos12: &Pose,
+        local_vel12: Vector,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        options: ShapeCastOptions,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        if let Some(hit) = cast::cast_shapes(pos12, local_vel12, g1, g2, options) {
+            return Ok(hit);
+        }
+        match parts::cast_shapes(self, pos12, local_vel12, g1, g2, options) {
+            Some(hit) => hit,
+            None => PARRY.cast_shapes(pos12, local_vel12, g1, g2, options),
+        }
+    }
+
+    fn cast_shapes_nonlinear(
+        &self,
+        motion1: &NonlinearRigidMotion,
+        g1: &dyn Shape,
+        motion2: &NonlinearRigidMotion,
+        g2: &dyn Shape,
+        start_time: Real,
+        end_time: Real,
+        stop_at_penetration: bool,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        let movers =
+            [(motion1, g1), (motion2, g2)].map(|(motion, shape)| MovingShape { motion, shape });
+        parts::cast_shapes_nonlinear(self, movers, [start_time, end_time], stop_at_penetration)
+            .ok_or(Unsupported)
+    }
+}
+
+impl<M, C> PersistentQueryDispatcher<M, C> for IsaGjkDispatcher
+where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    fn contact_manifolds(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+        manifolds: &mut Vec<ContactManifold<M, C>>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported> {
+        let (shapes, operands) = ([g1, g2], (Operand::alone(g1), Operand::alone(g2)));
+        let may_be_composite = operands.0.may_be_composite() || operands.1.may_be_composite();
+        if may_be_composite
+            && composite::contact_manifolds(self, pos12, shapes, prediction, manifolds, workspace)
+        {
+            return Ok(());
+        }
+        composite::reset_to_single(manifolds, workspace);
+        let (constraints, epoch) = ([Constraints::None; 2], self.epochs.epoch());
+        self.update_manifold(
+            pos12,
+            operands,
+            epoch,
+            constraints,
+            prediction,
+            &mut manifolds[0],
+        )
+    }
+
+    fn contact_manifold_convex_convex(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        normal_constraints1: Option<&dyn NormalConstraints>,
+        normal_constraints2: Option<&dyn NormalConstraints>,
+        prediction: Real,
+        manifold: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported> {
+        let operands = (Operand::alone(g1), Operand::alone(g2));
+        let constraints = [normal_constraints1, normal_constraints2].map(Constraints::given);
+        // Whoever takes shapes apart may make parts that do not outlive their pair.
+        let epoch = None;
+        self.update_manifold(pos12, operands, epoch, constraints, prediction, manifold)
+    }
+}
+
+impl IsaGjkDispatcher {
+    /// Brings the manifold of two convex shapes up to date, which are unchanged during `epoch`.
+    // In a call the sides would go through memory, which pairs that are apart notice.
+    #[inline(always)]
+    pub(crate) fn update_manifold<'a, 'b, M, C>(
+        &self,
+        pos12: &Pose,
+        (operand_1, operand_2): (Operand<'a, impl Find<'a>>, Operand<'b, impl Find<'b>>),
+        epoch: Option<Epoch>,
+        constraints: [Constraints<'_>; 2],
+        prediction: Real,
+        manifold: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported>
+    where
+        M: Default + Clone + Send + Sync,
+        C: Default + Copy + Send + Sync,
+    {
+        let (g1, g2) = (operand_1.shape, operand_2.shape);
+        let update = UpdateManifold {
+            pos12,
+            prediction,
+            constraints,
+            manifold,
+            stats: &self.stats,
+        };
+        if pair::visit_operands(operand_1, operand_2, epoch, update).is_some() {
+            return Ok(());
+        }
+        let [c1, c2] = constraints;
+        c1.with(|c1| {
+            c2.with(|c2| {
+                PARRY.contact_manifold_convex_convex(pos12, g1, g2, c1, c2, prediction, manifold)
+            })
+        })
+    }
+}

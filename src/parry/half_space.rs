@@ -1,0 +1,57 @@
+//! Hulls over half-spaces: one support against the plane is the whole query.
+
+use crate::gjk::SeparatingAxis;
+use crate::parry::convert::HalfSpace;
+use crate::parry::pair::Pair;
+use crate::pose::RelativePose;
+use crate::query::{Feature, PairMemory, Proximity, vertex_of};
+use crate::stats::Cost;
+use crate::support::Support;
+
+/// Whether the bounding sphere of a hull is above a half-space by more than `beyond`. All hulls of a world are
+/// in a pair with its ground, and most of them end here.
+#[inline(always)]
+pub(crate) fn is_sphere_apart(
+    pair: &Pair<'_, HalfSpace>,
+    pose: &RelativePose,
+    beyond: f64,
+) -> bool {
+    let center = pose.point_to_2(pair.hull.center());
+    pair.other.normal.dot(center) - pair.hull.radius() > beyond
+}
+
+/// The vertex of a hull that is deepest in a half-space.
+#[inline(always)]
+pub(crate) fn deepest(
+    pair: &Pair<'_, HalfSpace>,
+    pose: &RelativePose,
+    memory: &PairMemory,
+    cost: &mut Cost,
+) -> Proximity {
+    let (hull, normal_2) = (pair.hull, pair.other.normal);
+    let normal = -pose.direction_to_1(normal_2);
+    let start = match *memory {
+        PairMemory::Axis(_, [vertex, _]) | PairMemory::Contact(_, [Feature::Vertex(vertex), _]) => {
+            hull.clamp_vertex(vertex)
+        }
+        _ => hull.start_vertex(normal),
+    };
+    let (on_1, vertex) = hull.support(normal, start, cost);
+    let signed_distance = normal_2.dot(pose.point_to_2(on_1));
+    Proximity {
+        signed_distance,
+        normal,
+        on_1,
+        on_2: on_1 + normal * signed_distance,
+        features: [Feature::Vertex(vertex), Feature::Face(0)],
+    }
+}
+
+/// The plane's normal as a separating axis.
+pub(crate) fn axis(pair: &Pair<'_, HalfSpace>, near: &Proximity) -> SeparatingAxis {
+    SeparatingAxis {
+        axis: near.normal,
+        separation: near.signed_distance,
+        ids: [vertex_of(pair.hull, near.features[0]), 0],
+    }
+}

@@ -1,0 +1,297 @@
+//! Prepared hulls of plain convex polyhedra, found again by address and proved by content.
+//!
+//! A dispatcher is handed bare references: it cannot know whether the polyhedron at an address
+//! is the one that was there before. So each use compares the polyhedron's points with those the
+//! hull was built from (a `memcmp`, some 20 ns for 100 vertices; of large hulls a `Digest` of them,
+//! 130 ns for 1,000), and the edges that these points do not determine, which are those across flat sides.
+//! Equal polyhedra have an equal hull, whatever the allocator or the user did in
+//! between; the table is a pure function of the shapes, and no answer depends on its history. Where the user promises that no shape changes for
+//! a while, the first use in that epoch compares for all of them.
+//!
+//! Each thread has a table of its own, which needs no lock; the hulls themselves are shared. Nothing
+//! says that a polyhedron is gone: its hull goes when it was not used for long ([`Aging`]).
+
+mod aging;
+mod digest;
+pub(crate) mod epoch;
+pub(crate) mod registry;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use parry3d::shape::ConvexPolyhedron;
+
+use crate::hull::Hull;
+use crate::parry::int_hash::IntMap;
+use aging::{Aging, KEEP_BYTES};
+use epoch::Epoch;
+use registry::PreparedHull;
+
+/// Room is made after this many pairs, and whenever this share of what may stay has been prepared.
+const LOOK_AFTER: u32 = 4096;
+const LOOK_AFTER_BYTES: usize = KEEP_BYTES as usize / 4;
+
+/// A thread's prepared hulls.
+pub(crate) struct HullCache {
+    entries: IntMap<Address, usize>,
+    /// The last address and slot met of each class of addresses, before the map is asked.
+    recent: DirectMapped,
+    slots: Vec<Slot>,
+    bytes: usize,
+    /// How many bytes there may be, and pairs until then, when room is made.
+    look_at: usize,
+    look_after: u32,
+    /// Which no other table has, and this one neither after references have ended.
+    state: u64,
+    aging: Aging,
+    /// The epoch that is under way.
+    epoch: Option<Epoch>,
+}
+
+impl Default for HullCache {
+    fn default() -> Self {
+        Self {
+            entries: IntMap::default(),
+            recent: DirectMapped::default(),
+            slots: Vec::new(),
+            bytes: 0,
+            look_at: KEEP_BYTES as usize + LOOK_AFTER_BYTES,
+            look_after: LOOK_AFTER,
+            state: new_state(),
+            aging: Aging::default(),
+            epoch: None,
+        }
+    }
+}
+
+fn new_state() -> u64 {
+    static STATES: AtomicU64 = AtomicU64::new(0);
+    STATES.fetch_add(1, Ordering::Relaxed)
+}
+
+/// Where a polyhedron keeps its points.
+type Address = usize;
+
+struct Slot {
+    address: Address,
+    prepared: Arc<PreparedHull>,
+    /// When it was used last, by the table's `Aging`.
+    used: u64,
+    /// In which it was proved last.
+    epoch: Option<Epoch>,
+}
+
+impl Slot {
+    fn new(address: Address, polyhedron: &ConvexPolyhedron) -> Self {
+        Self {
+            address,
+            prepared: PreparedHull::get_or_build(polyhedron),
+            used: 0,
+            epoch: None,
+        }
+    }
+
+    /// Whether it is of the polyhedron at its address: it was proved in the epoch that is under way, or is now.
+    #[inline(always)]
+    fn matches(&self, polyhedron: &ConvexPolyhedron, epoch: Option<Epoch>) -> bool {
+        (epoch.is_some() && self.epoch == epoch) || self.prepared.matches(polyhedron)
+    }
+
+    /// Marks the slot as proved again and returns a reference to its hull, if it has one.
+    #[inline(always)]
+    fn proved(&mut self, place: usize, now: u64, epoch: Option<Epoch>) -> Option<HullRef> {
+        self.used = now;
+        self.epoch = epoch;
+        self.prepared.hull().is_some().then_some(HullRef(place))
+    }
+
+    /// By which it is noticed that the same polyhedron is back, if it is where it was.
+    fn key(&self) -> u64 {
+        self.prepared.key() ^ self.address as u64
+    }
+
+    /// What goes with it, if nobody else has it.
+    fn bytes(&self) -> usize {
+        size_of::<Self>() + self.prepared.bytes()
+    }
+}
+
+/// A place in the table, good until room is made.
+#[derive(Clone, Copy)]
+pub(crate) struct HullRef(usize);
+
+/// Finds the hulls of polyhedra in the table.
+pub(crate) trait Find<'a> {
+    /// The hull of a polyhedron; `None` if it has none.
+    fn find(&mut self, cache: &mut HullCache, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef>;
+}
+
+/// Each with its proof.
+pub(crate) struct EachProved;
+
+impl<'a> Find<'a> for EachProved {
+    #[inline(always)]
+    fn find(&mut self, cache: &mut HullCache, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
+        cache.find(polyhedron)
+    }
+}
+
+impl<'a, F: Find<'a>> Find<'a> for &mut F {
+    #[inline]
+    fn find(&mut self, cache: &mut HullCache, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
+        (**self).find(cache, polyhedron)
+    }
+}
+
+/// Without another proof for the one that was proved last: it cannot have changed, it is borrowed.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct LastProved<'a>(Option<Proof<'a>>);
+
+#[derive(Clone, Copy)]
+struct Proof<'a> {
+    polyhedron: &'a ConvexPolyhedron,
+    place: HullRef,
+    state: u64,
+}
+
+impl<'a> Find<'a> for LastProved<'a> {
+    #[inline]
+    fn find(&mut self, cache: &mut HullCache, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
+        if let Some(proof) = self.0
+            && std::ptr::eq(proof.polyhedron, polyhedron)
+            && proof.state == cache.state
+        {
+            return Some(proof.place);
+        }
+        let place = cache.find(polyhedron)?;
+        *self = Self(Some(Proof {
+            polyhedron,
+            place,
+            state: cache.state,
+        }));
+        Some(place)
+    }
+}
+
+impl HullCache {
+    /// Before hulls are looked for, which are unchanged during `epoch`. References end here.
+    #[inline(always)]
+    pub fn begin(&mut self, epoch: Option<Epoch>) {
+        self.epoch = epoch;
+        self.look_after -= 1;
+        if self.look_after == 0 {
+            self.look_after();
+        }
+    }
+
+    /// Drops what seems unused, if it is much.
+    #[cold]
+    #[inline(never)]
+    fn look_after(&mut self) {
+        self.look_after = LOOK_AFTER;
+        self.aging.pass();
+        if self.bytes > KEEP_BYTES as usize {
+            self.evict();
+            self.look_at = self.bytes.max(KEEP_BYTES as usize) + LOOK_AFTER_BYTES;
+        }
+    }
+
+    fn evict(&mut self) {
+        let is_old = self.aging.limit();
+        let before = self.slots.len();
+        let aging = &mut self.aging;
+        self.slots.retain(|slot| {
+            let goes = is_old(slot.used);
+            if goes {
+                aging.dropped(slot.key(), slot.used);
+            }
+            !goes
+        });
+        if self.slots.len() == before {
+            return;
+        }
+        self.state = new_state();
+        self.slots.shrink_to(2 * self.slots.len());
+        self.recent = DirectMapped::default();
+        self.entries = (self.slots.iter().enumerate())
+            .map(|(i, slot)| (slot.address, i))
+            .collect();
+        self.bytes = self.slots.iter().map(Slot::bytes).sum();
+        PreparedHull::forget_unused();
+    }
+
+    /// The hull of a polyhedron, built if it is new; `None` if it has none.
+    #[inline(always)]
+    fn find(&mut self, polyhedron: &ConvexPolyhedron) -> Option<HullRef> {
+        let address = polyhedron.points().as_ptr() as Address;
+        let (known, place) = *self.recent.class(address);
+        if known == address
+            && let Some(slot) = self.slots.get_mut(place)
+            && slot.matches(polyhedron, self.epoch)
+        {
+            return slot.proved(place, self.aging.now(), self.epoch);
+        }
+        self.find_among_all(polyhedron)
+    }
+
+    #[inline(never)]
+    fn find_among_all(&mut self, polyhedron: &ConvexPolyhedron) -> Option<HullRef> {
+        let address = polyhedron.points().as_ptr() as Address;
+        let place = match self.entries.get(&address).copied() {
+            Some(i) if self.slots[i].matches(polyhedron, self.epoch) => i,
+            known => self.insert(address, polyhedron, known),
+        };
+        *self.recent.class(address) = (address, place);
+        self.slots[place].proved(place, self.aging.now(), self.epoch)
+    }
+
+    #[cold]
+    fn insert(
+        &mut self,
+        address: Address,
+        polyhedron: &ConvexPolyhedron,
+        known: Option<usize>,
+    ) -> usize {
+        let slot = Slot::new(address, polyhedron);
+        self.aging.prepared(slot.key(), slot.bytes());
+        self.bytes += slot.bytes();
+        if self.bytes > self.look_at {
+            // In the next pair: this one holds references.
+            self.look_after = 1;
+        }
+        if let Some(i) = known {
+            self.bytes -= self.slots[i].bytes();
+            self.slots[i] = slot;
+            return i;
+        }
+        self.slots.push(slot);
+        self.entries.insert(address, self.slots.len() - 1);
+        self.slots.len() - 1
+    }
+
+    /// The hull at a place that [`find`](Self::find) gave.
+    #[inline]
+    pub fn get(&self, place: HullRef) -> Option<&Hull> {
+        self.slots.get(place.0)?.prepared.hull()
+    }
+}
+
+/// A direct-mapped cache: one pair of address and slot for each class of addresses.
+struct DirectMapped([(Address, usize); CLASSES]);
+
+/// Enough for the different hulls of most scenes, in a few kilobytes.
+const CLASSES: usize = 256;
+
+impl Default for DirectMapped {
+    fn default() -> Self {
+        // No points are at address 0.
+        Self([(0, 0); CLASSES])
+    }
+}
+
+impl DirectMapped {
+    #[inline(always)]
+    fn class(&mut self, address: Address) -> &mut (Address, usize) {
+        &mut self.0[(address >> 4 ^ address >> 12) % CLASSES]
+    }
+}

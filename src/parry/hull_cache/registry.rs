@@ -1,0 +1,261 @@
+//! What is prepared of plain polyhedra, shared by all that need the same.
+//!
+//! Each thread of a pool meets every hull sooner or later; in a loaded world each collider has a shape
+//! of its own, and worlds that are simulated side by side are made alike. One prepared hull serves all
+//! of them: it is prepared once, and it is in the caches of the machine once.
+
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, PoisonError, Weak};
+
+use glam::Vec3;
+use parry3d::shape::ConvexPolyhedron;
+
+use crate::hull::Hull;
+use crate::hull::build::polyhedron::{Diagonals, fingerprint, hull_and_diagonals, same_points};
+use crate::parry::hull_cache::digest::Digest;
+
+/// What is prepared of a polyhedron. Whether it is of this one is to be proved by
+/// [`matches`](Self::matches).
+#[derive(Debug)]
+pub(crate) struct PreparedHull {
+    /// `None` where no hull can be built: such a shape is left to parry.
+    hull: Option<Hull>,
+    source: PointIdentity,
+    diagonals: Diagonals,
+    /// The fingerprint of the polyhedron.
+    key: u64,
+}
+
+/// By what the points are known again that it was built from.
+#[derive(Debug)]
+enum PointIdentity {
+    /// Many, by a digest.
+    Digest(Box<Digest>),
+    /// They are the hull's own.
+    Hull,
+    Points(Box<[Vec3]>),
+}
+
+impl PreparedHull {
+    /// That of another polyhedron with the same points and edges, if one is in use; else a new one.
+    pub fn get_or_build(polyhedron: &ConvexPolyhedron) -> Arc<Self> {
+        let key = fingerprint(polyhedron);
+        let known = HullRegistry::with(|registry| registry.find(key, polyhedron));
+        // Other threads need not wait until it is built. Of those that build the same, one will be
+        // the first.
+        known.unwrap_or_else(|| {
+            let new = Arc::new(Self::new(key, polyhedron));
+            HullRegistry::with(|registry| {
+                registry
+                    .find(key, polyhedron)
+                    .unwrap_or_else(|| registry.add(new))
+            })
+        })
+    }
+
+    fn new(key: u64, polyhedron: &ConvexPolyhedron) -> Self {
+        let points = polyhedron.points();
+        let (hull, diagonals) = hull_and_diagonals(polyhedron);
+        let hull = hull.ok();
+        let own = hull.as_ref().map(Hull::points);
+        let source = match Digest::of(points) {
+            Some(digest) => PointIdentity::Digest(digest.into()),
+            None if own.is_some_and(|own| same_points(own, points)) => PointIdentity::Hull,
+            None => PointIdentity::Points(points.into()),
+        };
+        Self {
+            hull,
+            source,
+            diagonals,
+            key,
+        }
+    }
+
+    /// Whether it was made of this polyhedron; of many points, up to the chance that [`Digest`]
+    /// leaves.
+    // perf: asked twice in each pair of hulls, most of which are proved apart in a thousand instructions.
+    #[inline(always)]
+    pub fn matches(&self, polyhedron: &ConvexPolyhedron) -> bool {
+        self.has_points(polyhedron.points()) && self.diagonals.are_of(polyhedron)
+    }
+
+    // perf: as above.
+    #[inline(always)]
+    fn has_points(&self, points: &[Vec3]) -> bool {
+        match &self.source {
+            PointIdentity::Digest(digest) => digest.matches(points),
+            PointIdentity::Hull => {
+                (self.hull.as_ref()).is_some_and(|own| same_points(own.points(), points))
+            }
+            PointIdentity::Points(source) => same_points(source, points),
+        }
+    }
+
+    /// Those that are equal have the same; others seldom do.
+    pub fn key(&self) -> u64 {
+        self.key
+    }
+
+    #[inline]
+    pub fn hull(&self) -> Option<&Hull> {
+        self.hull.as_ref()
+    }
+
+    pub fn bytes(&self) -> usize {
+        let hull = self.hull.as_ref().map_or(0, Hull::heap_bytes);
+        let source = match &self.source {
+            PointIdentity::Points(points) => size_of_val(&**points),
+            PointIdentity::Digest(_) => size_of::<Digest>(),
+            PointIdentity::Hull => 0,
+        };
+        size_of::<Self>() + hull + source + self.diagonals.heap_bytes()
+    }
+
+    /// Forgets those that no thread has any more.
+    pub fn forget_unused() {
+        HullRegistry::with(HullRegistry::sweep);
+    }
+}
+
+/// Prepared hulls in use by any thread, keyed by fingerprint. A thread looks a polyhedron up here only
+/// on first use.
+struct HullRegistry {
+    shared: BTreeMap<u64, Vec<Weak<PreparedHull>>>,
+    /// At how many fingerprints those are dropped that nobody uses any more.
+    sweep_at: usize,
+}
+
+static REGISTRY: Mutex<HullRegistry> = Mutex::new(HullRegistry {
+    shared: BTreeMap::new(),
+    sweep_at: 0,
+});
+
+impl HullRegistry {
+    fn with<T>(work: impl FnOnce(&mut Self) -> T) -> T {
+        // A panic elsewhere leaves nothing half done here.
+        work(&mut REGISTRY.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn find(&self, key: u64, polyhedron: &ConvexPolyhedron) -> Option<Arc<PreparedHull>> {
+        let mut alike = self.shared.get(&key)?.iter().filter_map(Weak::upgrade);
+        alike.find(|prepared| prepared.matches(polyhedron))
+    }
+
+    fn add(&mut self, new: Arc<PreparedHull>) -> Arc<PreparedHull> {
+        if self.shared.len() >= self.sweep_at {
+            self.sweep();
+        }
+        let alike = self.shared.entry(new.key).or_default();
+        alike.retain(is_used);
+        alike.push(Arc::downgrade(&new));
+        new
+    }
+
+    fn sweep(&mut self) {
+        self.shared.retain(|_, alike| {
+            alike.retain(is_used);
+            !alike.is_empty()
+        });
+        self.sweep_at = 2 * self.shared.len() + 1;
+    }
+}
+
+fn is_used(prepared: &Weak<PreparedHull>) -> bool {
+    prepared.strong_count() > 0
+}
+
+#[cfg(test)]
+mod tests {
+    use std::thread;
+
+    use super::*;
+
+    /// A square pyramid, over either diagonal of its base.
+    fn pyramid(height: f32, other_diagonal: bool) -> ConvexPolyhedron {
+        let base = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+        let mut points: Vec<Vec3> = base.map(|[x, z]| Vec3::new(x, 0.0, z)).into();
+        points.push(Vec3::new(0.0, height, 0.0));
+        let mut triangles = vec![[0, 4, 1], [1, 4, 2], [2, 4, 3], [3, 4, 0]];
+        triangles.extend(if other_diagonal {
+            [[0, 1, 3], [1, 2, 3]]
+        } else {
+            [[0, 1, 2], [0, 2, 3]]
+        });
+        ConvexPolyhedron::from_convex_mesh(points, &triangles).expect("parry takes it")
+    }
+
+    #[test]
+    fn equal_polyhedra_share_what_is_prepared() {
+        let here = PreparedHull::get_or_build(&pyramid(1.0, false));
+        assert!(here.hull().is_some());
+        let there = thread::spawn(|| PreparedHull::get_or_build(&pyramid(1.0, false)));
+        let there = there.join().expect("no panic");
+        assert!(Arc::ptr_eq(&here, &there));
+        let higher = PreparedHull::get_or_build(&pyramid(1.5, false));
+        assert!(!Arc::ptr_eq(&here, &higher));
+        assert!(higher.matches(&pyramid(1.5, false)));
+    }
+
+    /// The diagonals of a flat side are our own, so any others make the same hull.
+    #[test]
+    fn the_diagonals_of_flat_sides_do_not_matter() {
+        let [one, other] =
+            [false, true].map(|diagonal| PreparedHull::get_or_build(&pyramid(1.0, diagonal)));
+        assert!(one.matches(&pyramid(1.0, false)) && one.matches(&pyramid(1.0, true)));
+        let [one, other] = [one, other].map(|prepared| format!("{:?}", prepared.hull()));
+        assert_eq!(one, other);
+    }
+
+    /// With a vertex inside of a flat side the names of features depend on the edges.
+    #[test]
+    fn other_edges_are_another_polyhedron() {
+        let [one, other] = [false, true].map(|cut| PreparedHull::get_or_build(&six_sided(cut)));
+        assert!(one.hull().is_some() && other.hull().is_some());
+        assert!(one.matches(&six_sided(false)) && !one.matches(&six_sided(true)));
+        assert!(other.matches(&six_sided(true)) && !other.matches(&six_sided(false)));
+    }
+
+    /// A pyramid with a vertex inside of its base, to which all corners have an edge, or all but one.
+    fn six_sided(cut: bool) -> ConvexPolyhedron {
+        let corner = |i: u32| {
+            let (sin, cos) = (i as f32 * std::f32::consts::FRAC_PI_3).sin_cos();
+            Vec3::new(cos, 0.0, sin)
+        };
+        let mut points: Vec<Vec3> = (0..6).map(corner).collect();
+        points.extend([Vec3::ZERO, Vec3::Y]);
+        let mut triangles: Vec<[u32; 3]> = (0..6).map(|i| [i, 7, (i + 1) % 6]).collect();
+        if cut {
+            triangles.extend([[0, 1, 2], [0, 2, 6]]);
+            triangles.extend((2..6).map(|i| [i, (i + 1) % 6, 6]));
+        } else {
+            triangles.extend((0..6).map(|i| [i, (i + 1) % 6, 6]));
+        }
+        ConvexPolyhedron::from_convex_mesh(points, &triangles).expect("parry takes it")
+    }
+
+    #[test]
+    fn that_there_is_no_hull_is_shared_as_well() {
+        let [flat, again] = [(); 2].map(|()| PreparedHull::get_or_build(&pyramid(1e-9, false)));
+        assert!(flat.hull().is_none());
+        assert!(Arc::ptr_eq(&flat, &again));
+    }
+
+    #[test]
+    fn what_nobody_uses_is_not_kept() {
+        let used = PreparedHull::get_or_build(&pyramid(2.0, false));
+        for i in 0..1000 {
+            let seen = Arc::downgrade(&PreparedHull::get_or_build(&pyramid(3.0 + i as f32, false)));
+            assert_eq!(seen.strong_count(), 0);
+        }
+        for _ in 0..1000 {
+            PreparedHull::get_or_build(&pyramid(2.5, false));
+        }
+        let kept =
+            HullRegistry::with(|registry| registry.shared.values().map(Vec::len).sum::<usize>());
+        assert!(kept < 100, "{kept} kept");
+        assert!(Arc::ptr_eq(
+            &used,
+            &PreparedHull::get_or_build(&pyramid(2.0, false))
+        ));
+    }
+}

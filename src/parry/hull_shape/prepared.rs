@@ -1,0 +1,116 @@
+//! Preparing the hulls of a whole world.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use parry3d::shape::{Compound, CompoundFlags, ConvexPolyhedron, SharedShape};
+
+use super::HullShape;
+use crate::hull::HullError;
+use crate::hull::build::polyhedron::{fingerprint, same_polyhedron};
+
+/// Puts [`HullShape`]s in the place of plain hulls, also of those that are parts of compounds, for
+/// worlds that were loaded or that others have built. Colliders that share a shape, or have equal
+/// hulls, share the new one: in a loaded world each collider has a shape of its own.
+///
+/// ```
+/// use isa_gjk::HullShape;
+/// use isa_gjk::hull_shape::PreparedShapes;
+/// use rapier3d::prelude::*;
+///
+/// # let corners = [Vector::ZERO, Vector::X, Vector::Y, Vector::Z];
+/// # let hull = SharedShape::convex_hull(&corners).unwrap();
+/// # let mut world = PhysicsWorld::default();
+/// # for _ in 0..2 {
+/// #     world.insert(RigidBodyBuilder::dynamic(), ColliderBuilder::new(hull.clone()));
+/// # }
+/// let mut prepared = PreparedShapes::default();
+/// for (_, collider) in world.colliders.iter_mut() {
+///     let shape = prepared.prepare(collider.shared_shape());
+///     collider.set_shape(shape);
+/// }
+/// # for (_, collider) in world.colliders.iter() {
+/// #     assert!(collider.shape().as_shape::<HullShape>().is_some());
+/// # }
+/// ```
+#[derive(Default)]
+pub struct PreparedShapes {
+    /// By the address of what was prepared.
+    known: HashMap<usize, Replacement>,
+    /// By the fingerprint of the polyhedron.
+    hulls: HashMap<u64, Vec<SharedShape>>,
+    refused: Vec<HullError>,
+}
+
+struct Replacement {
+    prepared: SharedShape,
+    /// Kept so that no other shape comes to its address.
+    _original: SharedShape,
+}
+
+impl PreparedShapes {
+    /// The shape with its plain hulls prepared, or the shape itself if none of them can be. Round
+    /// hulls stay as they are, and compounds with [`CompoundFlags::FIX_INTERNAL_EDGES`], of which
+    /// parry could not smooth prepared parts.
+    pub fn prepare(&mut self, shape: &SharedShape) -> SharedShape {
+        let address = Arc::as_ptr(&shape.0).addr();
+        if let Some(known) = self.known.get(&address) {
+            return known.prepared.clone();
+        }
+        let prepared = self.replacement(shape).unwrap_or_else(|| shape.clone());
+        let known = Replacement {
+            prepared: prepared.clone(),
+            _original: shape.clone(),
+        };
+        self.known.insert(address, known);
+        prepared
+    }
+
+    /// What was wrong with each plain hull that had to stay one.
+    pub fn refused(&self) -> &[HullError] {
+        &self.refused
+    }
+
+    fn replacement(&mut self, shape: &SharedShape) -> Option<SharedShape> {
+        if let Some(polyhedron) = shape.as_convex_polyhedron() {
+            return self.hull(polyhedron);
+        }
+        let compound = shape.as_compound()?;
+        if compound.flags().contains(CompoundFlags::FIX_INTERNAL_EDGES) {
+            return None;
+        }
+        let parts = compound.shapes();
+        let prepared: Vec<_> = parts
+            .iter()
+            .map(|(pose, part)| (*pose, self.prepare(part)))
+            .collect();
+        let is_new = parts
+            .iter()
+            .zip(&prepared)
+            .any(|((_, old), (_, new))| !Arc::ptr_eq(&old.0, &new.0));
+        is_new.then(|| SharedShape::new(Compound::new(prepared)))
+    }
+
+    /// A `HullShape` of this polyhedron, or of one that is equal to it.
+    fn hull(&mut self, polyhedron: &ConvexPolyhedron) -> Option<SharedShape> {
+        let alike = self.hulls.entry(fingerprint(polyhedron)).or_default();
+        let of_this = |shape: &&SharedShape| {
+            let hull = shape.as_shape::<HullShape>();
+            hull.is_some_and(|hull| same_polyhedron(&hull.inner.polyhedron, polyhedron))
+        };
+        if let Some(known) = alike.iter().find(of_this) {
+            return Some(known.clone());
+        }
+        match HullShape::try_from(polyhedron.clone()) {
+            Ok(hull) => {
+                let shape = SharedShape::new(hull);
+                alike.push(shape.clone());
+                Some(shape)
+            }
+            Err(error) => {
+                self.refused.push(error);
+                None
+            }
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! The points of a manifold, and what they inherit from those of the frame before.
+
+use glam::Vec3;
+use parry3d::math::Real;
+use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::PackedFeatureId;
+use wide::{f32x4, u32x4};
+
+use crate::manifold::{Contacts, MAX_POINTS};
+use crate::map_pair::map_pair;
+use crate::parry::manifold::record;
+use crate::query::Feature;
+
+/// Replaces the manifold's points, and hands the data (the solver's impulses) of the old ones on.
+pub(crate) fn write_points<M, C: Default + Copy>(
+    manifold: &mut ContactManifold<M, C>,
+    contacts: &Contacts,
+    border_radii: [f64; 2],
+    swapped: bool,
+) {
+    let normals = record::ordered([manifold.local_n1, manifold.local_n2], swapped);
+    let new_points = ManifoldPoints::new(contacts, normals, border_radii, swapped);
+    let count = contacts.len;
+    let tracked = &mut manifold.points;
+    let old = FeatureKeys::of(tracked);
+    let new = FeatureKeys::new(new_points.features, count);
+    if old == new && tracked.len() == count {
+        for (i, tracked) in tracked.iter_mut().enumerate() {
+            *tracked = new_points.tracked(i, tracked.data);
+        }
+        return;
+    }
+    let matches = match_old_points(tracked, &old, &new_points, &new, count);
+    let data = |i: usize| tracked.get(i).map_or_else(C::default, |old| old.data);
+    let inheritance = [data(0), data(1), data(2), data(3), C::default()];
+    tracked.clear();
+    tracked.extend((0..count).map(|i| new_points.tracked(i, inheritance[matches[i]])));
+}
+
+/// Where contacts are, and between what, as the manifold sees the shapes: coordinate by coordinate, those
+/// that mean nothing included.
+struct ManifoldPoints {
+    points: [[[f32; MAX_POINTS]; 3]; 2],
+    distances: [f32; MAX_POINTS],
+    features: [[u32; MAX_POINTS]; 2],
+}
+
+impl ManifoldPoints {
+    #[inline(always)]
+    fn new(contacts: &Contacts, normals: [Vec3; 2], border_radii: [f64; 2], swapped: bool) -> Self {
+        let at_border = |(points, side): (&[f32x4; 3], usize)| {
+            let [x, y, z] = *points;
+            let to_border = normals[side] * border_radii[side] as Real;
+            [
+                (x + to_border.x).to_array(),
+                (y + to_border.y).to_array(),
+                (z + to_border.z).to_array(),
+            ]
+        };
+        let [a, b, c, d] = &contacts.features;
+        let packed = |side: usize| {
+            let pack = |features: &[Feature; 2]| record::pack(features[side]).0;
+            [pack(a), pack(b), pack(c), pack(d)]
+        };
+        // References, since which one comes first is selected.
+        let sides = record::ordered([(&contacts.on_1, 0), (&contacts.on_2, 1)], swapped);
+        Self {
+            points: map_pair(sides, at_border),
+            distances: (contacts.distance - (border_radii[0] + border_radii[1]) as Real).to_array(),
+            features: map_pair(sides, |(_, side)| packed(side)),
+        }
+    }
+
+    #[inline(always)]
+    fn point(&self, side: usize, i: usize) -> Vec3 {
+        let [x, y, z] = &self.points[side];
+        Vec3::new(x[i], y[i], z[i])
+    }
+
+    #[inline(always)]
+    fn tracked<C>(&self, i: usize, data: C) -> TrackedContact<C> {
+        let [fid1, fid2] = map_pair([0, 1], |side| PackedFeatureId(self.features[side][i]));
+        TrackedContact {
+            local_p1: self.point(0, i),
+            local_p2: self.point(1, i),
+            dist: self.distances[i],
+            fid1,
+            fid2,
+            data,
+        }
+    }
+}
+
+/// What the contacts of a manifold are between, see [`record::feature_keys`]: by the first shape, and by the
+/// second.
+struct FeatureKeys([u32x4; 2]);
+
+impl FeatureKeys {
+    /// Of a manifold; of contacts that it could have beside its own, nothing.
+    #[inline(always)]
+    fn of<C>(contacts: &[TrackedContact<C>]) -> Self {
+        if let Some([a, b, c, d]) = contacts.first_chunk() {
+            let first = [a.fid1.0, b.fid1.0, c.fid1.0, d.fid1.0];
+            let second = [a.fid2.0, b.fid2.0, c.fid2.0, d.fid2.0];
+            return Self::new([first, second], MAX_POINTS);
+        }
+        let [mut first, mut second] = [[0; MAX_POINTS]; 2];
+        for (i, contact) in contacts.iter().enumerate() {
+            [first[i], second[i]] = [contact.fid1.0, contact.fid2.0];
+        }
+        Self::new([first, second], contacts.len())
+    }
+
+    /// From the packed features of so many; of the others, nothing.
+    #[inline(always)]
+    fn new([first, second]: [[u32; MAX_POINTS]; 2], count: usize) -> Self {
+        let counted = u32x4::new([0, 1, 2, 3]).simd_lt(u32x4::splat(count as u32));
+        let features = map_pair([first, second], |row| u32x4::new(row) & counted);
+        Self(record::feature_keys(features))
+    }
+
+    /// A bit for each that is the same as one of the others.
+    #[inline(always)]
+    fn same(&self, others: &Self, one: usize) -> u32 {
+        let [a, b] = map_pair([0, 1], |side| {
+            let one = u32x4::splat(others.0[side].to_array()[one]);
+            self.0[side].simd_eq(one)
+        });
+        (a & b).to_bitmask()
+    }
+}
+
+impl PartialEq for FeatureKeys {
+    #[inline(always)]
+    fn eq(&self, other: &Self) -> bool {
+        let [a, b] = map_pair([0, 1], |side| self.0[side] ^ other.0[side]);
+        !(a | b).any()
+    }
+}
+
+/// Index meaning "no old point matched".
+const NONE: usize = MAX_POINTS;
+
+/// For each new contact the old one whose data it takes over: that between the same features. What
+/// is left over goes to the nearest of the others, however far: an impulse in a wrong place of the
+/// patch is a better start for the solver than a body that is borne by three contacts of four.
+/// (Of another dispatcher's manifold no more points than ours have hand their data on.)
+fn match_old_points<C>(
+    old: &[TrackedContact<C>],
+    old_ids: &FeatureKeys,
+    new_points: &ManifoldPoints,
+    new_ids: &FeatureKeys,
+    count: usize,
+) -> [usize; MAX_POINTS] {
+    let old = &old[..old.len().min(MAX_POINTS)];
+    let mut matches = [NONE; MAX_POINTS];
+    // A bit for each old point that is not matched yet.
+    let mut left = (1_u32 << old.len()) - 1;
+    for (i, matched) in matches[..count].iter_mut().enumerate() {
+        let candidates = old_ids.same(new_ids, i) & left;
+        *matched = (candidates.trailing_zeros() as usize).min(NONE);
+        // All but the lowest one.
+        left ^= candidates & candidates.wrapping_neg();
+    }
+    if left == 0 {
+        return matches;
+    }
+    let unmatched = matches[..count].iter_mut().enumerate();
+    for (i, matched) in unmatched.filter(|(_, matched)| **matched == NONE) {
+        let place = new_points.point(0, i);
+        let away = |j: &usize| old[*j].local_p1.distance_squared(place);
+        let others = (0..old.len()).filter(|j| left >> j & 1 == 1);
+        if let Some(j) = others.min_by(|j, k| away(j).total_cmp(&away(k))) {
+            *matched = j;
+            left &= !(1 << j);
+        }
+    }
+    matches
+}

@@ -1,0 +1,228 @@
+//! A pair's memory, kept in its contact manifold.
+//!
+//! Manifolds are saved, cloned and pooled with the world, reach the parts of composite shapes,
+//! and cost rapier nothing; a workspace would make it rebuild its solver graph every step. So
+//! the memory is written where the manifold has room, in words that mean what they say:
+//!
+//! - without points, `local_n1` is the separating axis (parry's own habit) in an [`AxisFrame`], and
+//!   `local_n2`, which nobody reads then, holds the two extreme vertices as whole numbers; of a pair
+//!   whose bounding spheres are apart it is zero;
+//! - with points, `local_n1` is the contact normal, and the feature ids of the first point name
+//!   the features in contact.
+//!
+//! What another dispatcher or a different pair left there is as good as any other hint.
+
+use glam::{DVec3, Vec3};
+use parry3d::math::Rotation;
+use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::PackedFeatureId;
+use wide::u32x4;
+
+use crate::gjk::SeparatingAxis;
+use crate::map_pair::map_pair;
+use crate::pose::RelativePose;
+use crate::query::{self, Feature, PairMemory, Proximity};
+use crate::support::{Cso, Polytope, Support, VertexId};
+use crate::tolerance::NEARLY_UNIT;
+
+/// Of which shape's frame a pair keeps its separating axis.
+#[derive(Clone, Copy)]
+pub(crate) enum AxisFrame<'a> {
+    /// The kernels' first shape.
+    First,
+    /// Their second shape, which is there in the frame of the first.
+    Second(&'a RelativePose),
+}
+
+impl<'a> AxisFrame<'a> {
+    /// That of the larger shape. Where sizes differ it is mostly the small one that tumbles, over a
+    /// floor or along a wall, and seen from these the axis stays where it is.
+    #[inline]
+    pub fn of<A: Support, B: Support>(cso: &Cso<'a, A, B>) -> Self {
+        if cso.shape_2.radius() > cso.shape_1.radius() {
+            Self::Second(cso.pose)
+        } else {
+            Self::First
+        }
+    }
+
+    /// From the frame of the kernels' first shape.
+    #[inline]
+    fn to_stored(self, axis: DVec3) -> DVec3 {
+        match self {
+            Self::First => axis,
+            Self::Second(pose) => pose.direction_to_2(axis),
+        }
+    }
+
+    /// To the frame of the kernels' first shape.
+    #[inline]
+    fn to_kernel(self, axis: DVec3) -> DVec3 {
+        match self {
+            Self::First => axis,
+            Self::Second(pose) => pose.direction_to_1(axis),
+        }
+    }
+}
+
+/// Reads what the previous frame left. `swapped`: the manifold's second shape is the kernels' first.
+#[inline(always)]
+pub(crate) fn read<M, C>(
+    manifold: &ContactManifold<M, C>,
+    swapped: bool,
+    frame: AxisFrame<'_>,
+) -> PairMemory {
+    let stored = if swapped && !manifold.points.is_empty() {
+        manifold.local_n2
+    } else {
+        manifold.local_n1
+    };
+    let Some(axis) = unit(stored) else {
+        return PairMemory::None;
+    };
+    match deepest(&manifold.points) {
+        None => {
+            let n2 = manifold.local_n2;
+            // Casts saturate, and NaN becomes 0: any vector is some pair of vertices.
+            PairMemory::Axis(frame.to_kernel(axis), [n2.x as u32, n2.y as u32])
+        }
+        Some(point) => match (unpack(point.fid1), unpack(point.fid2)) {
+            (Some(f1), Some(f2)) => PairMemory::Contact(axis, ordered([f1, f2], swapped)),
+            _ => PairMemory::Axis(axis, [0, 0]),
+        },
+    }
+}
+
+#[inline]
+fn deepest<C>(contacts: &[TrackedContact<C>]) -> Option<&TrackedContact<C>> {
+    let (mut deepest, others) = contacts.split_first()?;
+    for other in others {
+        if other.dist < deepest.dist {
+            deepest = other;
+        }
+    }
+    Some(deepest)
+}
+
+/// Leaves nothing to a pair that is known to be apart without it: where to begin next is not worth
+/// a root and a division.
+#[inline(always)]
+pub(crate) fn forget<M, C>(manifold: &mut ContactManifold<M, C>) {
+    manifold.points.clear();
+    manifold.local_n1 = Vec3::ZERO;
+}
+
+/// Leaves a separating axis in a manifold without points.
+#[inline(always)]
+pub(crate) fn set_axis<M, C>(
+    manifold: &mut ContactManifold<M, C>,
+    apart: &SeparatingAxis,
+    frame: AxisFrame<'_>,
+) {
+    manifold.points.clear();
+    manifold.local_n1 = frame.to_stored(apart.axis).as_vec3();
+    manifold.local_n2 = as_vector(apart.ids);
+}
+
+/// Of f32 whole numbers up to 2^24 are exact.
+#[inline]
+fn as_vector(ids: [VertexId; 2]) -> Vec3 {
+    Vec3::new(ids[0] as f32, ids[1] as f32, 0.0)
+}
+
+/// Parry's routines keep a separating axis in the frame of the manifold's first shape, as one from
+/// it to the second: from ours to theirs by the `rotation` of the second in that frame, and back by its
+/// inverse.
+pub(crate) fn convert_parry_axis<M, C>(
+    manifold: &mut ContactManifold<M, C>,
+    swapped: bool,
+    rotation: Rotation,
+) {
+    if swapped && manifold.points.is_empty() {
+        manifold.local_n1 = -(rotation * manifold.local_n1);
+    }
+}
+
+/// Leaves a contact that was discarded, as a place for the next query to start from.
+pub(crate) fn set_hint<A: Polytope, B: Polytope, M, C>(
+    manifold: &mut ContactManifold<M, C>,
+    near: &Proximity,
+    cso: &Cso<'_, A, B>,
+) {
+    let start = SeparatingAxis {
+        axis: near.normal,
+        separation: near.signed_distance,
+        ids: query::vertices(cso, near.features),
+    };
+    set_axis(manifold, &start, AxisFrame::of(cso));
+}
+
+/// What belongs to the two shapes of a pair, from the kernels' order to the manifold's or back.
+#[inline]
+pub(crate) fn ordered<T>([a, b]: [T; 2], swapped: bool) -> [T; 2] {
+    if swapped { [b, a] } else { [a, b] }
+}
+
+/// A vector that is a unit vector up to rounding, or nothing. (Separations along it are then right
+/// to the same relative rounding.)
+#[inline]
+fn unit(v: Vec3) -> Option<DVec3> {
+    let v = v.as_dvec3();
+    // Also false for NaN.
+    ((v.length_squared() - 1.0).abs() < NEARLY_UNIT).then_some(v)
+}
+
+const KIND: u32 = 0b11 << 30;
+const VERTEX: u32 = 0b01 << 30;
+const EDGE: u32 = 0b10 << 30;
+const FACE: u32 = 0b11 << 30;
+
+/// As parry packs feature ids; its own constructors are not inlined across crates.
+#[inline]
+pub(crate) fn pack(feature: Feature) -> PackedFeatureId {
+    PackedFeatureId(match feature {
+        Feature::Vertex(v) => VERTEX | v,
+        Feature::Edge(e) => EDGE | e,
+        Feature::Face(f) => FACE | f,
+    })
+}
+
+/// What an old contact and a new one between the same features have in common, of four contacts at once
+/// by the packed features of both shapes. A vertex that moves on from one face to the next stays what it
+/// is.
+#[inline(always)]
+pub(crate) fn feature_keys([a, b]: [u32x4; 2]) -> [u32x4; 2] {
+    let [kind, face] = [u32x4::splat(KIND), u32x4::splat(FACE)];
+    let vertex_and_face = ((a ^ b) & kind).simd_eq(u32x4::splat(VERTEX ^ FACE));
+    map_pair([a, b], |id| {
+        let unnamed = vertex_and_face & (id & kind).simd_eq(face);
+        unnamed.bitselect(face, id)
+    })
+}
+
+#[inline]
+fn unpack(id: PackedFeatureId) -> Option<Feature> {
+    let code = id.0 & !KIND;
+    match id.0 & KIND {
+        VERTEX => Some(Feature::Vertex(code)),
+        EDGE => Some(Feature::Edge(code)),
+        FACE => Some(Feature::Face(code)),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn packed_features_are_parrys() {
+        assert_eq!(pack(Feature::Vertex(7)), PackedFeatureId::vertex(7));
+        assert_eq!(pack(Feature::Edge(8)), PackedFeatureId::edge(8));
+        assert_eq!(pack(Feature::Face(9)), PackedFeatureId::face(9));
+        for feature in [Feature::Vertex(1), Feature::Edge(2), Feature::Face(3)] {
+            assert_eq!(unpack(pack(feature)), Some(feature));
+        }
+        assert_eq!(unpack(PackedFeatureId::UNKNOWN), None);
+    }
+}

@@ -1,0 +1,14 @@
+//! The plug into rapier and parry: which shapes are ours, their manifolds, and queries of scenes.
+
+mod composite;
+mod constraints;
+mod convert;
+pub(crate) mod dispatcher;
+mod half_space;
+mod hull_cache;
+pub(crate) mod hull_shape;
+mod int_hash;
+mod manifold;
+mod pair;
+mod scaled;
+mod scene;

@@ -1,0 +1,165 @@
+//! Shape casts of hulls, by the GJK ray cast.
+
+use glam::DVec3;
+use parry3d::math::{Pose, Real, Vector};
+use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus};
+use parry3d::shape::{PolygonalFeatureMap, Shape};
+
+use crate::hull::Hull;
+use crate::parry::pair::{self, Pair, PairVisitor, Workspace};
+use crate::parry::scene::separation::{CallerProximity, KernelFrame};
+use crate::pose::RelativePose;
+use crate::query::{Answer, PairMemory, Query};
+use crate::ray_cast::{Impact, RayCast, ray_cast};
+use crate::simplex::Preferred;
+use crate::stats::Cost;
+use crate::support::{Cso, Polytope, Support};
+use crate::tolerance::{GRAZING, RAY_TOUCHING};
+
+/// When shape 2, moving by `velocity` relative to shape 1 (in frame 1), meets shape 1. The outer
+/// `None`: not a pair for us. As with parry, a shape that does not move meets nothing.
+pub(crate) fn cast_shapes(
+    pos12: &Pose,
+    velocity: Vector,
+    shape_1: &dyn Shape,
+    shape_2: &dyn Shape,
+    options: ShapeCastOptions,
+) -> Option<Option<ShapeCastHit>> {
+    let cast = Cast {
+        pos12,
+        velocity,
+        options,
+    };
+    pair::visit(shape_1, shape_2, cast)
+}
+
+struct Cast<'a> {
+    pos12: &'a Pose,
+    velocity: Vector,
+    options: ShapeCastOptions,
+}
+
+impl PairVisitor for Cast<'_> {
+    type Answer = Option<ShapeCastHit>;
+
+    const CURVED: bool = true;
+
+    fn visit<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        workspace: &mut Workspace,
+    ) -> Option<Self::Answer> {
+        self.cast(pair, |cso, velocity, frame| {
+            self.overlap(cso, velocity, frame, workspace)
+        })
+    }
+
+    /// How deep they overlap is parry's to say.
+    fn visit_curved<B: Support>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        _: &dyn PolygonalFeatureMap,
+        _: &mut Workspace,
+    ) -> Option<Self::Answer> {
+        self.cast(pair, |_, _, _| None)
+    }
+}
+
+impl Cast<'_> {
+    /// `overlap` answers for shapes that are within the target distance from the beginning.
+    fn cast<B: Support>(
+        &self,
+        pair: &Pair<'_, B>,
+        overlap: impl FnOnce(&Cso<'_, Hull, B>, DVec3, &KernelFrame<'_>) -> Option<Option<ShapeCastHit>>,
+    ) -> Option<Option<ShapeCastHit>> {
+        let moves = self.velocity.is_finite() && self.velocity != Vector::ZERO;
+        if !(moves && RelativePose::is_valid(self.pos12)) {
+            return Some(None);
+        }
+        let pose = pair.pose(self.pos12);
+        let cso = pair.cso(&pose);
+        let frame = KernelFrame::new(pair, &pose);
+        // That of the other shape as the hull sees it.
+        let velocity = self.velocity.as_dvec3();
+        let velocity = if pair.swapped {
+            -pose.direction_to_1(velocity)
+        } else {
+            velocity
+        };
+        let impact = ray_cast::<Preferred, _, _>(
+            &cso,
+            velocity,
+            self.options.max_time_of_impact.into(),
+            pair.core_distance(self.target_distance(), cso.size()),
+            &mut Cost::default(),
+        );
+        match impact {
+            RayCast::Miss => Some(None),
+            RayCast::Hit(impact) => Some(Some(hit_at(&impact, velocity, &frame))),
+            // Also false for NaN.
+            RayCast::Overlap if self.options.max_time_of_impact >= 0.0 => {
+                overlap(&cso, velocity, &frame)
+            }
+            RayCast::Overlap => Some(None),
+        }
+    }
+
+    /// Not negative, and not NaN.
+    fn target_distance(&self) -> Real {
+        self.options.target_distance.max(0.0)
+    }
+
+    /// Shapes that touch, or are within the target distance, from the beginning: they meet at time 0 if they
+    /// approach, or if the cast is to stop there in any case. What departs, or slides along, meets nothing.
+    fn overlap<A: Polytope, B: Polytope>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        velocity: DVec3,
+        frame: &KernelFrame<'_>,
+        workspace: &mut Workspace,
+    ) -> Option<Option<ShapeCastHit>> {
+        let mut query = Query {
+            cso,
+            max_distance: f64::INFINITY,
+            polytope_cache: None,
+            scratch: &mut workspace.epa,
+            cost: &mut Cost::default(),
+        };
+        let Answer::Near(near) = query.run(&PairMemory::None)?.0 else {
+            return Some(None);
+        };
+        let departs = near.normal.dot(velocity) >= -GRAZING * velocity.length();
+        if departs && !self.options.stop_at_penetration {
+            return Some(None);
+        }
+        let near = CallerProximity::of_proximity(&near, frame);
+        let slack = RAY_TOUCHING * cso.size();
+        let status = if near.signed_distance < f64::from(self.target_distance()) - slack {
+            ShapeCastStatus::PenetratingOrWithinTargetDist
+        } else {
+            ShapeCastStatus::Converged
+        };
+        Some(Some(hit(0.0, &near, status)))
+    }
+}
+
+fn hit_at(impact: &Impact, velocity: DVec3, frame: &KernelFrame<'_>) -> ShapeCastHit {
+    let way = velocity * impact.time;
+    let near = frame.near(impact.normal, [impact.on_1, impact.on_2 - way], 0.0);
+    hit(impact.time, &near, ShapeCastStatus::Converged)
+}
+
+fn hit(time: f64, near: &CallerProximity, status: ShapeCastStatus) -> ShapeCastHit {
+    let [witness1, witness2] = near.points.map(|p| p.as_vec3());
+    let [normal1, normal2] = near.normals.map(|n| n.as_vec3());
+    ShapeCastHit {
+        time_of_impact: time as Real,
+        witness1,
+        witness2,
+        normal1,
+        normal2,
+        status,
+        subshape1: 0,
+        subshape2: 0,
+    }
+}

@@ -1,0 +1,4 @@
+//! Queries without memory.
+
+pub(crate) mod cast;
+pub(crate) mod separation;

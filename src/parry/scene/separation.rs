@@ -1,0 +1,326 @@
+//! Queries without memory: distance, contact, closest points and intersection of hulls.
+//!
+//! Only `contact` asks how deep shapes overlap; the others end with GJK. Shapes that are apart by no more
+//! than [`MIN_DIRECTED_DISTANCE`](crate::tolerance::MIN_DIRECTED_DISTANCE) touch, for all of them.
+
+use glam::DVec3;
+use parry3d::math::{Pose, Real};
+use parry3d::query::{ClosestPoints, Contact};
+use parry3d::shape::{PolygonalFeatureMap, Shape};
+
+use crate::epa;
+use crate::gjk::{self, Outcome};
+use crate::parry::convert::HalfSpace;
+use crate::parry::half_space;
+use crate::parry::manifold::record::ordered;
+use crate::parry::pair::{self, Pair, PairVisitor, Workspace};
+use crate::parry::scaled;
+use crate::pose::RelativePose;
+use crate::query::{Answer, PairMemory, Proximity, Query};
+use crate::simplex::Preferred;
+use crate::stats::Cost;
+use crate::support::{Polytope, Support};
+use crate::tolerance::{GJK_CURVED_GAP, GJK_GAP_OF_SIZE};
+
+/// Whether two shapes touch or overlap. `None`, here and below: not a pair for us.
+pub(crate) fn intersect(pos12: &Pose, shape_1: &dyn Shape, shape_2: &dyn Shape) -> Option<bool> {
+    let separation = separation(pos12, shape_1, shape_2, 0.0)?;
+    Some(matches!(separation, Separation::Overlapping))
+}
+
+/// Zero where the shapes overlap.
+pub(crate) fn distance(pos12: &Pose, shape_1: &dyn Shape, shape_2: &dyn Shape) -> Option<Real> {
+    Some(match separation(pos12, shape_1, shape_2, Real::INFINITY)? {
+        Separation::Overlapping => 0.0,
+        Separation::Within(near) => near.signed_distance as Real,
+        Separation::Beyond => Real::INFINITY,
+    })
+}
+
+/// The nearest points of shapes that are at most `max_distance` apart.
+pub(crate) fn closest_points(
+    pos12: &Pose,
+    shape_1: &dyn Shape,
+    shape_2: &dyn Shape,
+    max_distance: Real,
+) -> Option<ClosestPoints> {
+    Some(match separation(pos12, shape_1, shape_2, max_distance)? {
+        Separation::Overlapping => ClosestPoints::Intersecting,
+        Separation::Within(near) => {
+            let [p1, p2] = near.points.map(|p| p.as_vec3());
+            ClosestPoints::WithinMargin(p1, p2)
+        }
+        Separation::Beyond => ClosestPoints::Disjoint,
+    })
+}
+
+/// The deepest contact of shapes that overlap or are at most `prediction` apart.
+pub(crate) fn contact(
+    pos12: &Pose,
+    shape_1: &dyn Shape,
+    shape_2: &dyn Shape,
+    prediction: Real,
+) -> Option<Option<Contact>> {
+    let query = ContactQuery { pos12, prediction };
+    pair::visit(shape_1, shape_2, query)
+}
+
+/// The nearest points of a pair, its rounded borders accounted for. Normals and points are in
+/// their own shapes' frames.
+pub(crate) struct CallerProximity {
+    pub signed_distance: f64,
+    pub normals: [DVec3; 2],
+    pub points: [DVec3; 2],
+}
+
+impl CallerProximity {
+    pub fn of_proximity(near: &Proximity, frame: &KernelFrame<'_>) -> Self {
+        frame.near(near.normal, [near.on_1, near.on_2], near.signed_distance)
+    }
+
+    fn contact(&self) -> Contact {
+        let [p1, p2] = self.points.map(|p| p.as_vec3());
+        let [n1, n2] = self.normals.map(|n| n.as_vec3());
+        Contact::new(p1, p2, n1, n2, self.signed_distance as Real)
+    }
+}
+
+/// How the kernels see a pair: the hull first, in whose frame they answer.
+pub(crate) struct KernelFrame<'a> {
+    /// Of the other shape, in the frame of the hull.
+    pose: &'a RelativePose,
+    border_radii: [f64; 2],
+    swapped: bool,
+}
+
+impl<'a> KernelFrame<'a> {
+    pub fn new<B>(pair: &Pair<'_, B>, pose: &'a RelativePose) -> Self {
+        Self {
+            pose,
+            border_radii: pair.border_radii,
+            swapped: pair.swapped,
+        }
+    }
+
+    /// From the normal and the points of the cores, in the frame of the hull.
+    pub fn near(&self, normal: DVec3, [on_1, on_2]: [DVec3; 2], distance: f64) -> CallerProximity {
+        let normals = [normal, -self.pose.direction_to_2(normal)];
+        let points = [on_1, self.pose.point_to_2(on_2)];
+        let points = [0, 1].map(|i| points[i] + normals[i] * self.border_radii[i]);
+        CallerProximity {
+            signed_distance: distance - self.border_radii[0] - self.border_radii[1],
+            normals: ordered(normals, self.swapped),
+            points: ordered(points, self.swapped),
+        }
+    }
+}
+
+/// What lies between two shapes.
+enum Separation {
+    /// Nothing: they touch or overlap.
+    Overlapping,
+    /// A gap, and where it is narrowest.
+    Within(CallerProximity),
+    /// More than was asked about.
+    Beyond,
+}
+
+impl Separation {
+    /// Up to the distance `touching` the shapes touch.
+    fn of(near: CallerProximity, touching: f64) -> Self {
+        if near.signed_distance <= touching {
+            Self::Overlapping
+        } else {
+            Self::Within(near)
+        }
+    }
+}
+
+fn separation(
+    pos12: &Pose,
+    shape_1: &dyn Shape,
+    shape_2: &dyn Shape,
+    max_distance: Real,
+) -> Option<Separation> {
+    let query = SeparationQuery {
+        pos12,
+        max_distance,
+    };
+    pair::visit(shape_1, shape_2, query)
+}
+
+struct SeparationQuery<'a> {
+    pos12: &'a Pose,
+    max_distance: Real,
+}
+
+impl SeparationQuery<'_> {
+    /// Of a hull and any convex shape; `gap` is GJK's, relative to their size.
+    fn separation<B: Support>(&self, pair: &Pair<'_, B>, gap: f64) -> Option<Separation> {
+        let pose = valid_pose(pair, self.pos12)?;
+        let cso = pair.cso(&pose);
+        let cost = &mut Cost::default();
+        let size = cso.size();
+        // Within its gap GJK does not know: there, too, they touch, for all queries.
+        let max_distance = pair.core_distance(self.max_distance, size) + gap * size;
+        if cso.are_spheres_apart(max_distance) {
+            return Some(Separation::Beyond);
+        }
+        let axis = cso.towards_origin();
+        let vertex = match gjk::test_axis(&cso, axis, cso.start_vertices(axis), max_distance, cost)
+        {
+            Ok(_) => return Some(Separation::Beyond),
+            Err(vertex) => vertex,
+        };
+        let outcome =
+            gjk::distance_within::<Preferred, _, _>(&cso, &[vertex], max_distance, gap, cost);
+        Some(match outcome {
+            Outcome::Separated(_) => Separation::Beyond,
+            Outcome::Overlapping(_) => Separation::Overlapping,
+            Outcome::Disjoint(closest) if closest.distance > max_distance => Separation::Beyond,
+            Outcome::Disjoint(closest) => {
+                let points = [closest.on_1, closest.on_2];
+                let near =
+                    KernelFrame::new(pair, &pose).near(closest.normal, points, closest.distance);
+                Separation::of(near, pair.touching(size) + gap * size)
+            }
+        })
+    }
+}
+
+impl PairVisitor for SeparationQuery<'_> {
+    type Answer = Separation;
+
+    const HALF_SPACES: bool = true;
+
+    const CURVED: bool = true;
+
+    fn visit<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        _: &mut Workspace,
+    ) -> Option<Self::Answer> {
+        self.separation(pair, GJK_GAP_OF_SIZE)
+    }
+
+    fn visit_curved<B: Support>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        _: &dyn PolygonalFeatureMap,
+        _: &mut Workspace,
+    ) -> Option<Self::Answer> {
+        self.separation(pair, GJK_CURVED_GAP)
+    }
+
+    fn visit_half_space(
+        &mut self,
+        pair: &Pair<'_, HalfSpace>,
+        _: &mut Workspace,
+    ) -> Option<Self::Answer> {
+        let near = over_half_space(pair, self.pos12, self.max_distance)?;
+        let touching = pair.touching(pair.hull.radius());
+        Some(match near {
+            Some(near) => Separation::of(near, touching),
+            None => Separation::Beyond,
+        })
+    }
+}
+
+fn valid_pose<B>(pair: &Pair<'_, B>, pos12: &Pose) -> Option<RelativePose> {
+    RelativePose::is_valid(pos12).then(|| pair.pose(pos12))
+}
+
+/// Where a hull is deepest in a half-space, or `None` if it is farther away than `max_distance`.
+fn over_half_space(
+    pair: &Pair<'_, HalfSpace>,
+    pos12: &Pose,
+    max_distance: Real,
+) -> Option<Option<CallerProximity>> {
+    let pose = valid_pose(pair, pos12)?;
+    let max_distance = pair.core_distance(max_distance, pair.hull.radius());
+    if half_space::is_sphere_apart(pair, &pose, max_distance) {
+        return Some(None);
+    }
+    let deepest = half_space::deepest(pair, &pose, &PairMemory::None, &mut Cost::default());
+    let is_near = deepest.signed_distance <= max_distance;
+    Some(is_near.then(|| CallerProximity::of_proximity(&deepest, &KernelFrame::new(pair, &pose))))
+}
+
+struct ContactQuery<'a> {
+    pos12: &'a Pose,
+    prediction: Real,
+}
+
+impl ContactQuery<'_> {
+    /// The contact of shapes that touch or overlap, by EPA.
+    fn depth<B: Support>(&self, pair: &Pair<'_, B>, workspace: &mut Workspace) -> Option<Contact> {
+        let pose = valid_pose(pair, self.pos12)?;
+        let cost = &mut Cost::default();
+        let found = epa::penetration(&pair.cso(&pose), &[], &mut workspace.epa, cost)?;
+        let points = [found.on_1, found.on_2];
+        let near = KernelFrame::new(pair, &pose).near(found.normal, points, -found.depth);
+        Some(near.contact())
+    }
+}
+
+impl PairVisitor for ContactQuery<'_> {
+    type Answer = Option<Contact>;
+
+    const HALF_SPACES: bool = true;
+
+    const CURVED: bool = true;
+
+    fn visit<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        workspace: &mut Workspace,
+    ) -> Option<Self::Answer> {
+        let pose = valid_pose(pair, self.pos12)?;
+        let cso = pair.cso(&pose);
+        let (answer, _) = Query {
+            cso: &cso,
+            max_distance: pair.core_distance(self.prediction, cso.size()),
+            polytope_cache: None,
+            scratch: &mut workspace.epa,
+            cost: &mut Cost::default(),
+        }
+        .run(&PairMemory::None)?;
+        Some(match answer {
+            Answer::Separated(_) => None,
+            Answer::Near(near) => {
+                let frame = KernelFrame::new(pair, &pose);
+                Some(CallerProximity::of_proximity(&near, &frame).contact())
+            }
+        })
+    }
+
+    /// How deep they overlap is parry's to say. Where they only touch it may not know.
+    fn visit_curved<B: Support>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        features: &dyn PolygonalFeatureMap,
+        workspace: &mut Workspace,
+    ) -> Option<Self::Answer> {
+        let query = SeparationQuery {
+            pos12: self.pos12,
+            max_distance: self.prediction,
+        };
+        match query.separation(pair, GJK_CURVED_GAP)? {
+            Separation::Overlapping => {
+                let contact = scaled::contact(pair, features, self.pos12);
+                Some(contact.or_else(|| self.depth(pair, workspace)))
+            }
+            Separation::Within(near) => Some(Some(near.contact())),
+            Separation::Beyond => Some(None),
+        }
+    }
+
+    fn visit_half_space(
+        &mut self,
+        pair: &Pair<'_, HalfSpace>,
+        _: &mut Workspace,
+    ) -> Option<Self::Answer> {
+        let near = over_half_space(pair, self.pos12, self.prediction)?;
+        Some(near.map(|near| near.contact()))
+    }
+}

@@ -1,0 +1,290 @@
+//! Features in contact, and the proof that they still are.
+//!
+//! A pair of features spans a facet of the Minkowski difference: a face and a vertex, or two
+//! edges that cross. Re-evaluated at the present poses it is again a polygon inside of the
+//! Minkowski difference. One support pair along its normal tells whether its plane supports the
+//! difference: then its signed distance from the origin bounds the true one from one side. From
+//! the other side,
+//!
+//! - if the plane separates the shapes: the origin projects into the polygon, so a point of the
+//!   difference is that near;
+//! - if they overlap by `d`: the pyramid from the polygon to the difference's centre lies in the
+//!   difference, and when the origin is at least `d` inside of all of its sides, so does the ball
+//!   of radius `d`; no direction has a smaller depth. *Globally*: no other face was looked at.
+
+use std::cmp::Ordering;
+
+use glam::DVec3;
+
+use super::polygon::{
+    cone_contains_ball, crossing, edge_outside_origin, inset, pyramid_contains_ball,
+};
+use super::verdict::{FacetEdge, Verdict};
+use crate::gjk::SeparatingAxis;
+use crate::map_pair::map_pair;
+use crate::pose::RelativePose;
+use crate::query::Proximity;
+use crate::stats::Cost;
+use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
+use crate::tolerance::PARALLEL_EDGES;
+
+/// A part of a polytope's boundary.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Feature {
+    /// A vertex.
+    Vertex(VertexId),
+    /// An edge.
+    Edge(u32),
+    /// A face.
+    Face(FaceId),
+}
+
+/// Re-evaluates the facet that `features` span.
+#[inline]
+pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    features: [Feature; 2],
+    max_distance: f64,
+    tolerance: f64,
+    cost: &mut Cost,
+) -> Verdict {
+    let test = FacetTest {
+        max_distance,
+        tolerance,
+    };
+    match features {
+        [Feature::Edge(e1), Feature::Edge(e2)] => {
+            match (cso.shape_1.edge_ends(e1), cso.shape_2.edge_ends(e2)) {
+                (Some(ends_1), Some(ends_2)) => test.edges(cso, features, ends_1, ends_2, cost),
+                _ => Verdict::Degenerate,
+            }
+        }
+        [Feature::Face(f1), other] if cso.shape_1.has_face(f1) => {
+            let start = vertex_of(cso.shape_2, other);
+            test.face(cso.shape_1, cso.shape_2, cso.pose, [f1, start], cost)
+        }
+        [other, Feature::Face(f2)] if cso.shape_2.has_face(f2) => {
+            let start = vertex_of(cso.shape_1, other);
+            let pose = cso.pose.inverse();
+            test.face(cso.shape_2, cso.shape_1, &pose, [f2, start], cost)
+                .reversed(cso.pose)
+        }
+        _ => Verdict::Degenerate,
+    }
+}
+
+/// A vertex of each feature, valid for its shape.
+pub fn vertices<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    features: [Feature; 2],
+) -> [VertexId; 2] {
+    [
+        vertex_of(cso.shape_1, features[0]),
+        vertex_of(cso.shape_2, features[1]),
+    ]
+}
+
+/// A vertex of a feature, valid for its shape.
+#[inline]
+pub(crate) fn vertex_of(shape: &impl Polytope, feature: Feature) -> VertexId {
+    let vertex = match feature {
+        Feature::Vertex(v) => v,
+        Feature::Edge(e) => shape.edge_ends(e).map_or(0, |ends| ends[0]),
+        Feature::Face(f) if shape.has_face(f) => shape.face_vertex(f, 0),
+        Feature::Face(_) => 0,
+    };
+    shape.clamp_vertex(vertex)
+}
+
+/// The features that the vertices of a simplex span. `normal` in frame 1, from shape 1 to 2.
+pub(in crate::query) fn of_simplex<'v, A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    simplex: impl Iterator<Item = &'v CsoVertex> + Clone,
+    normal: DVec3,
+) -> [Feature; 2] {
+    let ids_2 = simplex.clone().map(|v| v.ids[1]);
+    let outward_2 = -cso.pose.direction_to_2(normal);
+    [
+        spanned(cso.shape_1, simplex.map(|v| v.ids[0]), normal),
+        spanned(cso.shape_2, ids_2, outward_2),
+    ]
+}
+
+fn spanned(
+    shape: &impl Polytope,
+    mut ids: impl Iterator<Item = VertexId>,
+    outward: DVec3,
+) -> Feature {
+    let first = ids.next().unwrap_or(0);
+    let mut second = None;
+    for id in ids {
+        match second {
+            _ if id == first => {}
+            None => second = Some(id),
+            Some(s) if s == id => {}
+            Some(_) => return Feature::Face(shape.face_at_vertex(first, outward)),
+        }
+    }
+    match second {
+        None => Feature::Vertex(first),
+        // Two vertices without an edge between them are a diagonal of a face.
+        Some(s) => match shape.edge_between(first, s) {
+            Some(edge) => Feature::Edge(edge),
+            None => Feature::Face(shape.face_at_vertex(first, outward)),
+        },
+    }
+}
+
+struct FacetTest {
+    max_distance: f64,
+    tolerance: f64,
+}
+
+impl FacetTest {
+    /// A face of `p` against `q`; everything in the frame of `p`. `ids` are the face and a
+    /// vertex of `q` to climb from.
+    #[inline]
+    fn face<P: Polytope, Q: Polytope>(
+        &self,
+        p: &P,
+        q: &Q,
+        q_pose: &RelativePose,
+        [face, start]: [u32; 2],
+        cost: &mut Cost,
+    ) -> Verdict {
+        let normal = p.face_normal(face);
+        if normal == DVec3::ZERO {
+            return Verdict::Degenerate; // a sliver without a plane
+        }
+        let (on_q, q_id) = q.support(-q_pose.direction_to_2(normal), start, cost);
+        let on_q = q_pose.point_to_1(on_q);
+        let signed_distance = normal.dot(on_q) - p.face_offset(face);
+        if signed_distance > self.max_distance {
+            return Verdict::Separated(SeparatingAxis {
+                axis: normal,
+                separation: signed_distance,
+                ids: [p.face_vertex(face, 0), q_id],
+            });
+        }
+        let certified = Proximity {
+            signed_distance,
+            normal,
+            on_1: on_q - normal * signed_distance,
+            on_2: on_q,
+            features: [Feature::Face(face), Feature::Vertex(q_id)],
+        };
+        let apex = p.center() - q_pose.point_to_1(q.center());
+        let depth = -signed_distance - self.tolerance;
+        let inset = inset(p, face, normal, on_q, signed_distance);
+        if inset > 0.0 && (depth <= 0.0 || cone_contains_ball(inset, depth, apex, normal)) {
+            return Verdict::Certified(certified);
+        }
+        let corners = p.face_points(face).map(|corner| corner - on_q);
+        if let Some(side) = edge_outside_origin(corners.clone(), normal, self.tolerance) {
+            let ends = map_pair(side.ends, |i| [p.face_vertex(face, i), q_id]);
+            return Verdict::OutsideEdge(FacetEdge::new(ends, side.along, normal));
+        }
+        if signed_distance >= 0.0 || pyramid_contains_ball(corners, apex, depth) {
+            return Verdict::Certified(certified);
+        }
+        Verdict::Undecided(certified)
+    }
+
+    /// Two edges that cross; everything in frame 1.
+    #[inline]
+    fn edges<A: Polytope, B: Polytope>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        features: [Feature; 2],
+        ends_1: [VertexId; 2],
+        ends_2: [VertexId; 2],
+        cost: &mut Cost,
+    ) -> Verdict {
+        let [a0, a1] = map_pair(ends_1, |v| cso.shape_1.vertex(v));
+        let [b0, b1] = map_pair(ends_2, |v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
+        let (along_1, along_2) = (a1 - a0, b1 - b0);
+        let cross = along_1.cross(along_2);
+        let area_squared = cross.length_squared();
+        let lengths = along_1.length_squared() * along_2.length_squared();
+        let crossing_angle = area_squared.partial_cmp(&(PARALLEL_EDGES * lengths));
+        if crossing_angle != Some(Ordering::Greater) {
+            return Verdict::Degenerate;
+        }
+        let center = cso.center();
+        let offset = a0 - b0;
+        let outward = if cross.dot(offset - center) >= 0.0 {
+            1.0
+        } else {
+            -1.0
+        };
+        let normal = cross * (outward / area_squared.sqrt());
+        // Before a vertex is searched for: whether or not the two edges still span a facet, it is left.
+        let vertices = parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], outward > 0.0);
+        let corners = vertices.iter().map(|vertex| vertex.w);
+        let [s, t] = crossing(offset, along_1, along_2);
+        let is_inside = (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t);
+        if !is_inside
+            && let Some(side) = edge_outside_origin(corners.clone(), normal, self.tolerance)
+        {
+            let ends = map_pair(side.ends, |i| vertices[i].ids);
+            return Verdict::OutsideEdge(FacetEdge::new(ends, side.along, normal));
+        }
+        let extreme = cso.support(normal, [ends_1[0], ends_2[0]], cost);
+        let signed_distance = -normal.dot(extreme.w);
+        if signed_distance > self.max_distance {
+            return Verdict::Separated(SeparatingAxis {
+                axis: normal,
+                separation: signed_distance,
+                ids: extreme.ids,
+            });
+        }
+        if -normal.dot(offset) - signed_distance > self.tolerance {
+            return Verdict::NotSupporting(extreme, normal);
+        }
+        let on_1 = a0 + along_1 * s;
+        let proximity = Proximity {
+            signed_distance,
+            normal,
+            on_1,
+            on_2: on_1 + normal * signed_distance,
+            features,
+        };
+        let depth = -signed_distance - self.tolerance;
+        // The sides of the parallelogram are along the edges.
+        let length = along_1
+            .length_squared()
+            .max(along_2.length_squared())
+            .sqrt();
+        let inset = s.min(1.0 - s).min(t).min(1.0 - t) * area_squared.sqrt() / length;
+        if signed_distance >= 0.0
+            || cone_contains_ball(inset, depth, center, normal)
+            || pyramid_contains_ball(corners, center, depth)
+        {
+            return Verdict::Certified(proximity);
+        }
+        Verdict::Undecided(proximity)
+    }
+}
+
+/// The corners of the facet that two edges span, counter-clockwise seen from outside. `along`: the
+/// outward normal is along the cross product of their directions, not against it.
+#[inline]
+fn parallelogram(
+    [edge_1, edge_2]: [[DVec3; 2]; 2],
+    [ends_1, ends_2]: [[VertexId; 2]; 2],
+    along: bool,
+) -> [CsoVertex; 4] {
+    let corner = |a: usize, b: usize| CsoVertex {
+        w: edge_1[a] - edge_2[b],
+        on_1: edge_1[a],
+        ids: [ends_1[a], ends_2[b]],
+    };
+    // The first edge forwards, then the second backwards, turn clockwise about the cross product.
+    let (from, to) = if along { (1, 0) } else { (0, 1) };
+    [
+        corner(0, from),
+        corner(1, from),
+        corner(1, to),
+        corner(0, to),
+    ]
+}

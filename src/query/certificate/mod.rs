@@ -1,0 +1,7 @@
+//! Whether features still prove an answer at the present poses.
+
+pub(super) mod facet;
+pub(super) mod neighbors;
+mod polygon;
+pub(crate) mod verdict;
+pub(super) mod vertex_edge;

@@ -1,0 +1,237 @@
+//! The proof of a depth with the facets around.
+//!
+//! A pyramid over a polygon of points of the difference, its apex in the difference, lies in the
+//! difference. Where the ball of the depth's radius looks over a side of the pyramid under the nearest
+//! facet, the pyramid under the facet across that side may have room for the rest: if the ball is beneath
+//! its plane and inside of its other sides, each point beyond the one side is in it. So no direction has
+//! a smaller depth, and no polytope need be expanded to show it.
+
+use std::array;
+
+use glam::DVec3;
+
+use super::polygon::ball_is_inside;
+use super::verdict::FacetEdge;
+use crate::query::{Feature, Proximity, gauss_map};
+use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
+
+/// Of facets with more corners nothing is proved here. They are large; so mostly their own pyramid does.
+const MAX_CORNERS: usize = 4;
+
+/// A ball that looks over more sides than these is larger than the facet, and than those around.
+const MAX_SIDES: usize = 2;
+
+/// Whether the pyramids under a facet, whose plane supports the difference, and under those across its
+/// sides together hold the ball around the origin that reaches to the plane, up to `tolerance`.
+pub(in crate::query) fn contains_ball<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    facet: &Proximity,
+    tolerance: f64,
+) -> bool {
+    let pyramids = Pyramids {
+        apex: cso.center(),
+        radius: (-facet.signed_distance - tolerance).max(0.0),
+        tolerance,
+    };
+    let Some(here) = Facet::new(cso, facet.features) else {
+        return false;
+    };
+    let open: [bool; MAX_CORNERS] =
+        array::from_fn(|i| i < here.len && !pyramids.edge_contains_ball(&here, i));
+    let mut open_sides = (0..here.len).filter(|&i| open[i]);
+    open_sides.clone().count() <= MAX_SIDES
+        && open_sides.all(|i| {
+            let across = gauss_map::adjacent_facet(cso, &here.side(i, facet.normal));
+            let there = across.and_then(|next| pyramids.facet(cso, next));
+            there.is_some_and(|there| pyramids.contains_remainder([&here, &there], i))
+        })
+}
+
+/// Pyramids with a common apex, and the ball that they may hold.
+struct Pyramids {
+    apex: DVec3,
+    radius: f64,
+    /// Facets no farther than this from the apex have no pyramid that can be told from a flat one.
+    tolerance: f64,
+}
+
+impl Pyramids {
+    /// The facet that features span, if its plane is farther out than the ball.
+    fn facet<A: Polytope, B: Polytope>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        features: [Feature; 2],
+    ) -> Option<Facet> {
+        let facet = Facet::new(cso, features)?;
+        let [a, b, c] = [0, 1, 2].map(|i| facet.corners[i].w);
+        let normal = (b - a).cross(c - a).try_normalize()?;
+        let height = normal.dot(a - self.apex);
+        let outward = normal * height.signum();
+        let corners = &facet.corners[..facet.len];
+        let is_beyond = |corner: &CsoVertex| outward.dot(corner.w) >= self.radius;
+        let has_room = height.abs() > self.tolerance && corners.iter().all(is_beyond);
+        has_room.then_some(facet)
+    }
+
+    /// Through a side and the apex: a normal of that plane, and how far the facet's middle is to its side.
+    fn side_plane(&self, facet: &Facet, i: usize) -> (DVec3, f64) {
+        let [from, to] = facet.ends(i).map(|end| end.w);
+        let normal = (to - from).cross(self.apex - from);
+        (normal, normal.dot(facet.middle - from))
+    }
+
+    /// Whether the ball is inside of the plane through a side.
+    fn edge_contains_ball(&self, facet: &Facet, i: usize) -> bool {
+        let (normal, middle) = self.side_plane(facet, i);
+        ball_is_inside(facet.corners[i].w, normal * middle.signum(), self.radius)
+    }
+
+    /// Whether the second facet is across the side `i` of the first one, and the ball inside of all of its
+    /// other sides.
+    fn contains_remainder(&self, [here, there]: [&Facet; 2], i: usize) -> bool {
+        let side = here.ends(i).map(|end| end.ids);
+        let is_shared = |&k: &usize| {
+            let [from, to] = there.ends(k).map(|end| end.ids);
+            side == [from, to] || side == [to, from]
+        };
+        let mut sides = 0..there.len;
+        let Some(shared) = sides.clone().find(is_shared) else {
+            return false;
+        };
+        let (normal, middle_here) = self.side_plane(here, i);
+        let beyond = normal.dot(there.middle - here.corners[i].w);
+        beyond * middle_here < 0.0
+            && sides.all(|k| k == shared || self.edge_contains_ball(there, k))
+    }
+}
+
+/// A facet of the difference, or what may be one: a polygon of its points.
+struct Facet {
+    corners: [CsoVertex; MAX_CORNERS],
+    len: usize,
+    /// A point inside.
+    middle: DVec3,
+}
+
+impl Facet {
+    /// That of these features.
+    fn new<A: Polytope, B: Polytope>(cso: &Cso<'_, A, B>, features: [Feature; 2]) -> Option<Self> {
+        let (ids, len) = corners(cso, features)?;
+        let corners = ids.map(|ids| cso.vertex(ids));
+        let sum: DVec3 = corners[..len].iter().map(|corner| corner.w).sum();
+        Some(Self {
+            corners,
+            len,
+            middle: sum / len as f64,
+        })
+    }
+
+    fn ends(&self, i: usize) -> [&CsoVertex; 2] {
+        [&self.corners[i], &self.corners[(i + 1) % self.len]]
+    }
+
+    /// A side as walks know it, of the facet with this outward normal.
+    fn side(&self, i: usize, normal: DVec3) -> FacetEdge {
+        let [from, to] = self.ends(i);
+        let outward = (to.w - from.w).cross(normal);
+        FacetEdge {
+            ends: [from.ids, to.ids],
+            normal,
+            outward: outward * outward.dot(from.w - self.middle).signum(),
+        }
+    }
+}
+
+/// The corners of the polygon that two features span, in turn, and how many they are.
+fn corners<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    features: [Feature; 2],
+) -> Option<([[VertexId; 2]; MAX_CORNERS], usize)> {
+    match features {
+        [Feature::Edge(e1), Feature::Edge(e2)] => {
+            let ([a, b], [c, d]) = (cso.shape_1.edge_ends(e1)?, cso.shape_2.edge_ends(e2)?);
+            let around = [[a, c], [b, c], [b, d], [a, d]];
+            Some((array::from_fn(|i| around[i % 4]), 4))
+        }
+        [Feature::Face(f1), Feature::Vertex(v2)] => {
+            let (corners, len) = face_corners(cso.shape_1, f1)?;
+            Some((corners.map(|v1| [v1, v2]), len))
+        }
+        [Feature::Vertex(v1), Feature::Face(f2)] => {
+            let (corners, len) = face_corners(cso.shape_2, f2)?;
+            Some((corners.map(|v2| [v1, v2]), len))
+        }
+        _ => None,
+    }
+}
+
+fn face_corners(shape: &impl Polytope, face: FaceId) -> Option<([VertexId; MAX_CORNERS], usize)> {
+    let len = shape.face_len(face);
+    let corners = || array::from_fn(|i| shape.face_vertex(face, i % len));
+    (3..=MAX_CORNERS).contains(&len).then(|| (corners(), len))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::epa::{self, EpaScratch};
+    use crate::hull::Hull;
+    use crate::query::Verdict;
+    use crate::query::certificate::facet;
+    use crate::query::gauss_map::tests::{direction, random_pose};
+    use crate::query::seeds::EpaSeeds;
+    use crate::stats::Cost;
+    use crate::tolerance::DEPTH_GAP;
+    use glam::Vec3;
+
+    fn hull(rng: &mut oorandom::Rand64) -> Hull {
+        let sizes = [(); 3].map(|()| 0.4 + 0.6 * rng.rand_float());
+        let count = rng.rand_range(8..120);
+        let points: Vec<Vec3> = (0..count)
+            .map(|_| (direction(rng) * DVec3::from(sizes)).as_vec3())
+            .collect();
+        Hull::from_points(&points).expect("points on an ellipsoid are their own hull")
+    }
+
+    /// Facets that the origin projects into at depths of all kinds, walked to from random directions:
+    /// those that are not the nearest are proved of nothing.
+    #[test]
+    fn only_the_depth_is_proved() {
+        let mut rng = oorandom::Rand64::new(3);
+        let [mut proved, mut others] = [0; 2];
+        for _ in 0..3000 {
+            let hulls = [hull(&mut rng), hull(&mut rng)];
+            let pose = random_pose(1.8, &mut rng);
+            let cso = Cso {
+                shape_1: &hulls[0],
+                shape_2: &hulls[1],
+                pose: &pose,
+            };
+            let mut cost = Cost::default();
+            let normal = direction(&mut rng);
+            let vertex = cso.support(normal, [0, 0], &mut cost);
+            let mut next = gauss_map::facet_at_vertex(&cso, &vertex, normal);
+            let candidate = (0..20).find_map(|_| {
+                match facet::certify(&cso, next?, f64::INFINITY, DEPTH_GAP, &mut cost) {
+                    Verdict::OutsideEdge(side) => next = gauss_map::adjacent_facet(&cso, &side),
+                    Verdict::Undecided(candidate) => return Some(candidate),
+                    _ => next = None,
+                }
+                None
+            });
+            let Some(candidate) = candidate else { continue };
+            let seeds = EpaSeeds::under(&cso, candidate.features);
+            let scratch = &mut EpaScratch::default();
+            let depth = epa::penetration(&cso, seeds.as_slice(), scratch, &mut cost);
+            let depth = depth.expect("they overlap").depth;
+            let excess = -candidate.signed_distance - depth;
+            if contains_ball(&cso, &candidate, DEPTH_GAP) {
+                assert!(excess < 2.0 * DEPTH_GAP, "{excess} deeper than need be");
+                proved += 1;
+            } else if excess > 2.0 * DEPTH_GAP {
+                others += 1;
+            }
+        }
+        assert!(proved > 50 && others > 50, "{proved} proved, {others} not");
+    }
+}

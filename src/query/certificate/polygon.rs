@@ -1,0 +1,152 @@
+//! A facet of the Minkowski difference as a polygon, and the origin: whether it projects inside, and
+//! how deep it is in the pyramid beneath.
+
+use glam::DVec3;
+use wide::f32x4;
+
+use crate::map_pair::map_pair;
+use crate::support::{FaceId, FacePoints, Polytope};
+use crate::tolerance::INSET_ROUNDING;
+
+/// How far the projection of a point into a face's plane is at least inside of the face; not above zero
+/// where it may be outside. Four sides at a time, in f32: rounding is taken off. The point is no farther
+/// from the plane than `distance`.
+#[inline]
+pub(in crate::query) fn inset(
+    shape: &impl Polytope,
+    face: FaceId,
+    normal: DVec3,
+    point: DVec3,
+    distance: f64,
+) -> f64 {
+    let count = shape.face_len(face);
+    let (normal, at) = (normal.as_vec3(), point.as_vec3());
+    let mut least = f32x4::splat(f32::INFINITY);
+    let mut is_inside = f32x4::ZERO.simd_eq(f32x4::ZERO);
+    for first in (0..count).step_by(4) {
+        // Beyond the last corner come the first ones again.
+        let number = |i: usize| {
+            if first + i < count {
+                first + i
+            } else {
+                first + i - count
+            }
+        };
+        let [a, b, c, d] = shape.face_points_x4(face, [0, 1, 2, 3].map(number));
+        let next = shape.vertex(shape.face_vertex(face, number(4))).as_vec3();
+        let row = |axis: usize| {
+            let from = f32x4::new([a[axis], b[axis], c[axis], d[axis]]);
+            let to = f32x4::new([b[axis], c[axis], d[axis], next[axis]]);
+            (from - at[axis], to - from)
+        };
+        let [(from_x, x), (from_y, y), (from_z, z)] = [row(0), row(1), row(2)];
+        let inward_x = z * normal.y - y * normal.z;
+        let inward_y = x * normal.z - z * normal.x;
+        let inward_z = y * normal.x - x * normal.y;
+        let squared = inward_x * inward_x + inward_y * inward_y + inward_z * inward_z;
+        let height = -(inward_x * from_x + inward_y * from_y + inward_z * from_z) / squared.sqrt();
+        // Of a side without length the height is no number.
+        is_inside &= height.simd_gt(f32x4::ZERO);
+        least = least.fast_min(height);
+    }
+    if !is_inside.all() {
+        return 0.0;
+    }
+    let [a, b, c, d] = least.to_array().map(f64::from);
+    let size = 2.0 * shape.radius() + distance.abs() + point.length();
+    a.min(b).min(c.min(d)) - INSET_ROUNDING * size
+}
+
+/// Whether the ball of radius `depth` around the origin is in the hull of an apex and a disc around the
+/// point that is `depth` along the normal: the part of a face that is `inset`.
+///
+/// The disc alone reaches that far in all directions but those against the normal up to an angle, of which
+/// half has the tangent `depth / inset`; and there the apex does, if it does at that angle.
+#[inline]
+pub(in crate::query) fn cone_contains_ball(
+    inset: f64,
+    depth: f64,
+    apex: DVec3,
+    normal: DVec3,
+) -> bool {
+    let beneath = -apex.dot(normal);
+    let aside = (apex + normal * beneath).length();
+    let [inset_squared, depth_squared] = [inset * inset, depth * depth];
+    let at_angle = beneath * (inset_squared - depth_squared) - 2.0 * aside * inset * depth;
+    inset > 0.0 && beneath > 0.0 && at_angle >= depth * (inset_squared + depth_squared)
+}
+
+/// A side of a polygon.
+pub(in crate::query) struct PolygonEdge {
+    /// The numbers of its corners.
+    pub ends: [usize; 2],
+    /// From the first to the second.
+    pub along: DVec3,
+}
+
+/// The side of a polygon, counter-clockwise about `normal`, beyond which the origin projects
+/// farthest; `None` if it projects inside, up to `tolerance`.
+#[inline]
+pub(in crate::query) fn edge_outside_origin(
+    corners: impl FacePoints,
+    normal: DVec3,
+    tolerance: f64,
+) -> Option<PolygonEdge> {
+    let mut beyond = None;
+    let mut farthest = tolerance * tolerance;
+    let mut from = corners.clone().next_back()?;
+    let mut number = corners.len() - 1;
+    for (i, to) in corners.enumerate() {
+        let along = to - from;
+        let inward = normal.cross(along);
+        let height = -inward.dot(from);
+        if height < 0.0 {
+            let squared = height * height / inward.length_squared();
+            if squared > farthest {
+                farthest = squared;
+                beyond = Some(PolygonEdge {
+                    ends: [number, i],
+                    along,
+                });
+            }
+        }
+        (number, from) = (i, to);
+    }
+    beyond
+}
+
+/// Whether the origin is at least `depth` inside of all side planes of the pyramid over a
+/// polygon, counter-clockwise seen from outside, whose apex is beneath it.
+#[inline]
+pub(in crate::query) fn pyramid_contains_ball(
+    mut corners: impl FacePoints,
+    apex: DVec3,
+    depth: f64,
+) -> bool {
+    let Some(mut from) = corners.clone().next_back() else {
+        return false;
+    };
+    corners.all(|to| {
+        let (corner, inward) = (from, (to - from).cross(apex - from));
+        from = to;
+        ball_is_inside(corner, inward, depth)
+    })
+}
+
+/// Whether the ball around the origin with this radius, which may be negative, is inside of the plane
+/// through a corner.
+#[inline]
+pub(in crate::query) fn ball_is_inside(corner: DVec3, inward: DVec3, radius: f64) -> bool {
+    let (height, radius) = (-inward.dot(corner), radius.max(0.0));
+    height >= 0.0 && height * height >= radius * radius * inward.length_squared()
+}
+
+/// Where the lines `a + s along_1` and `b + t along_2`, `offset` being `a - b`, are nearest.
+#[inline]
+pub(in crate::query) fn crossing(offset: DVec3, along_1: DVec3, along_2: DVec3) -> [f64; 2] {
+    let cross = along_1.cross(along_2);
+    let area_squared = cross.length_squared();
+    map_pair([along_2, along_1], |along| {
+        -offset.dot(along.cross(cross)) / area_squared
+    })
+}

@@ -1,0 +1,96 @@
+//! What features turned out to prove, and where to go on from.
+
+use glam::DVec3;
+
+use crate::gjk::SeparatingAxis;
+use crate::map_pair::map_pair;
+use crate::pose::RelativePose;
+use crate::query::Proximity;
+use crate::support::{CsoVertex, VertexId};
+
+/// What a pair of features turned out to prove.
+pub(crate) enum Verdict {
+    /// The facet's plane separates the shapes by more than was asked about.
+    Separated(SeparatingAxis),
+    /// The facet's signed distance is that of the shapes.
+    Certified(Proximity),
+    /// The origin projects beyond this side of the facet: another one is nearest by now.
+    OutsideEdge(FacetEdge),
+    /// The facet's plane, with this normal, cuts through the difference: this vertex is beyond it.
+    NotSupporting(CsoVertex, DVec3),
+    /// The shapes overlap, perhaps less elsewhere. The answer if the facet turns out to be the
+    /// nearest.
+    Undecided(Proximity),
+    /// These features do not span a facet.
+    Degenerate,
+}
+
+/// A side of a facet. In frame 1.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FacetEdge {
+    /// The vertices at its ends.
+    pub ends: [[VertexId; 2]; 2],
+    /// The facet's normal, from shape 1 to shape 2.
+    pub normal: DVec3,
+    /// The direction in the facet's plane out of the facet.
+    pub outward: DVec3,
+}
+
+impl FacetEdge {
+    /// From one vertex to the next, which is `along` away.
+    #[inline]
+    pub(in crate::query) fn new(ends: [[VertexId; 2]; 2], along: DVec3, normal: DVec3) -> Self {
+        Self {
+            ends,
+            normal,
+            outward: along.cross(normal),
+        }
+    }
+}
+
+impl Verdict {
+    /// From the frame of shape 2, with the shapes swapped, to frame 1.
+    #[inline]
+    pub(in crate::query) fn reversed(&self, pose: &RelativePose) -> Self {
+        let direction = |dir| -pose.direction_to_1(dir);
+        match self {
+            Self::Separated(apart) => Self::Separated(SeparatingAxis {
+                axis: direction(apart.axis),
+                separation: apart.separation,
+                ids: flipped(apart.ids),
+            }),
+            Self::Certified(proximity) => Self::Certified(reversed(proximity, pose)),
+            Self::OutsideEdge(side) => Self::OutsideEdge(FacetEdge {
+                ends: map_pair(side.ends, flipped),
+                normal: direction(side.normal),
+                outward: direction(side.outward),
+            }),
+            Self::NotSupporting(vertex, normal) => {
+                let vertex = CsoVertex {
+                    w: direction(vertex.w),
+                    on_1: pose.point_to_1(vertex.on_2()),
+                    ids: flipped(vertex.ids),
+                };
+                Self::NotSupporting(vertex, direction(*normal))
+            }
+            Self::Undecided(candidate) => Self::Undecided(reversed(candidate, pose)),
+            Self::Degenerate => Self::Degenerate,
+        }
+    }
+}
+
+#[inline]
+fn flipped<T>([a, b]: [T; 2]) -> [T; 2] {
+    [b, a]
+}
+
+#[inline]
+fn reversed(p: &Proximity, pose: &RelativePose) -> Proximity {
+    Proximity {
+        signed_distance: p.signed_distance,
+        normal: -pose.direction_to_1(p.normal),
+        on_1: pose.point_to_1(p.on_2),
+        on_2: pose.point_to_1(p.on_1),
+        features: flipped(p.features),
+    }
+}

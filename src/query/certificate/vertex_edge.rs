@@ -1,0 +1,74 @@
+//! Nearest features without a plane between them: an edge or a vertex against a vertex, as where a
+//! ball or the end of a capsule rolls over an edge.
+//!
+//! Their nearest points bound the distance from above, one support pair along the line between
+//! them bounds it from below.
+
+use glam::DVec3;
+
+use crate::gjk;
+use crate::map_pair::map_pair;
+use crate::query::Feature;
+use crate::query::{Answer, Proximity};
+use crate::stats::Cost;
+use crate::support::{Cso, Polytope, VertexId};
+use crate::tolerance::MIN_DIRECTED_DISTANCE;
+
+/// The answer that `features` prove, if both bounds meet or the lower one is out of reach.
+pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
+    features: [Feature; 2],
+    max_distance: f64,
+    tolerance: f64,
+    cost: &mut Cost,
+) -> Option<Answer> {
+    let ends_1 = ends(cso.shape_1, features[0])?;
+    let ends_2 = ends(cso.shape_2, features[1])?;
+    if ends_1[0] != ends_1[1] && ends_2[0] != ends_2[1] {
+        return None;
+    }
+    let [a, b] = map_pair(ends_1, |v| cso.shape_1.vertex(v));
+    let [c, d] = map_pair(ends_2, |v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
+    let (on_1, on_2) = (nearest([a, b], c), nearest([c, d], a));
+    let distance = on_1.distance(on_2);
+    if distance.partial_cmp(&(MIN_DIRECTED_DISTANCE * cso.size()))
+        != Some(std::cmp::Ordering::Greater)
+    {
+        return None;
+    }
+    let normal = (on_2 - on_1) / distance;
+    let start = [ends_1[0], ends_2[0]];
+    match gjk::test_axis(cso, normal, start, max_distance, cost) {
+        Ok(apart) => Some(Answer::Separated(apart)),
+        Err(vertex) => {
+            (distance + normal.dot(vertex.w) <= tolerance).then_some(Answer::Near(Proximity {
+                signed_distance: distance,
+                normal,
+                on_1,
+                on_2,
+                features,
+            }))
+        }
+    }
+}
+
+/// The ends of an edge; a vertex twice. What the shape has not, a memory of another one, has none.
+fn ends(shape: &impl Polytope, feature: Feature) -> Option<[VertexId; 2]> {
+    match feature {
+        Feature::Vertex(vertex) => (shape.clamp_vertex(vertex) == vertex).then_some([vertex; 2]),
+        Feature::Edge(edge) => shape.edge_ends(edge),
+        Feature::Face(_) => None,
+    }
+}
+
+/// The point of a segment that is nearest to `p`.
+fn nearest([a, b]: [DVec3; 2], p: DVec3) -> DVec3 {
+    let along = b - a;
+    let share = (p - a).dot(along) / along.length_squared();
+    // Of a single point the share is no number.
+    if share > 0.0 {
+        a + along * share.min(1.0)
+    } else {
+        a
+    }
+}

@@ -1,0 +1,182 @@
+//! From facet to facet of the Minkowski difference, to where the origin projects into one.
+
+use std::ops::ControlFlow;
+
+use glam::DVec3;
+
+use super::certificate::verdict::{FacetEdge, Verdict};
+use super::certificate::{facet, vertex_edge};
+use super::{Answer, Feature, Query, WARM, gauss_map};
+use crate::map_pair::map_pair;
+use crate::stats::Stage;
+use crate::support::{Polytope, VertexId};
+
+/// A contact rolls over to the next facet or the one after, on hulls of a thousand vertices over some
+/// more; one that is not found by then is not near, or the nearest point is no facet's, and GJK finds it
+/// in fewer steps.
+const MAX_WALK: usize = 10;
+
+/// On the way from facet to facet.
+struct FacetWalk {
+    /// The features that span the facet to look at.
+    features: [Feature; 2],
+    /// Where these span no plane, it tells where to look.
+    normal: DVec3,
+    /// The side that was crossed last.
+    crossed: Option<[[VertexId; 2]; 2]>,
+    steps_left: usize,
+    /// That of an answer by this facet.
+    stage: Stage,
+    /// Those of answers by GJK and EPA.
+    gjk: [Stage; 2],
+}
+
+/// The facet to look at next, if there is one, and the ends of where it was looked for.
+type NextFacet = (Option<[Feature; 2]>, [[VertexId; 2]; 2]);
+
+type Found = Option<(Answer, Stage)>;
+
+impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
+    /// Re-evaluates the facet that `features` span.
+    #[inline(always)]
+    pub(crate) fn certify(&mut self, features: [Feature; 2]) -> Verdict {
+        let (max, tolerance) = (self.max_distance, self.tolerance());
+        facet::certify(self.cso, features, max, tolerance, self.cost)
+    }
+
+    /// Answers by the facet of a contact that is remembered, if the `verdict` on it allows that, or goes
+    /// on from there.
+    pub(crate) fn start_from_features(
+        &mut self,
+        normal: DVec3,
+        features: [Feature; 2],
+        verdict: &Verdict,
+    ) -> Found {
+        let mut walk = self.start_walk(normal, features, Stage::Feature, WARM);
+        match self.step(verdict, &mut walk) {
+            ControlFlow::Break(found) => found,
+            ControlFlow::Continue(()) => self.run_walk(walk),
+        }
+    }
+
+    /// Walks from the facet that `features` span.
+    pub(super) fn walk_from(
+        &mut self,
+        normal: DVec3,
+        features: [Feature; 2],
+        gjk: [Stage; 2],
+    ) -> Found {
+        self.run_walk(self.start_walk(normal, features, Stage::FacetWalk, gjk))
+    }
+
+    fn start_walk(
+        &self,
+        normal: DVec3,
+        features: [Feature; 2],
+        stage: Stage,
+        gjk: [Stage; 2],
+    ) -> FacetWalk {
+        FacetWalk {
+            features,
+            normal,
+            crossed: None,
+            steps_left: if self.skips_facet_walk() { 0 } else { MAX_WALK },
+            stage,
+            gjk,
+        }
+    }
+
+    fn run_walk(&mut self, mut walk: FacetWalk) -> Found {
+        loop {
+            let verdict = self.certify(walk.features);
+            if let ControlFlow::Break(found) = self.step(&verdict, &mut walk) {
+                return found;
+            }
+        }
+    }
+
+    /// Answers by the facet at hand, or by GJK and EPA where the way ends; else goes to the next facet.
+    #[inline(always)]
+    fn step(&mut self, verdict: &Verdict, walk: &mut FacetWalk) -> ControlFlow<Found> {
+        let (next, ends) = match verdict {
+            Verdict::Separated(apart) => {
+                return ControlFlow::Break(Some((Answer::Separated(*apart), walk.stage)));
+            }
+            Verdict::Certified(proximity) => {
+                return ControlFlow::Break(Some((Answer::Near(*proximity), walk.stage)));
+            }
+            Verdict::Undecided(candidate) => {
+                return ControlFlow::Break(self.find_depth(candidate, walk.stage, walk.gjk));
+            }
+            Verdict::OutsideEdge(side) => self.cross_edge(side, walk),
+            Verdict::NotSupporting(vertex, normal) => (
+                gauss_map::facet_at_vertex(self.cso, vertex, *normal),
+                [vertex.ids; 2],
+            ),
+            Verdict::Degenerate => {
+                let (max, tolerance) = (self.max_distance, self.tolerance());
+                let at_corner =
+                    vertex_edge::certify(self.cso, walk.features, max, tolerance, self.cost);
+                if let Some(answer) = at_corner {
+                    return ControlFlow::Break(Some((answer, walk.stage)));
+                }
+                self.restart_at(walk.normal, facet::vertices(self.cso, walk.features))
+            }
+        };
+        match next {
+            Some(next) if walk.steps_left > 0 => walk.features = next,
+            _ => {
+                let ends = map_pair(ends, |ids| self.cso.vertex(ids));
+                let distinct = if ends[0].ids == ends[1].ids { 1 } else { 2 };
+                return ControlFlow::Break(self.run_gjk(&ends[..distinct], walk.gjk));
+            }
+        }
+        walk.steps_left -= 1;
+        walk.stage = Stage::FacetWalk;
+        ControlFlow::Continue(())
+    }
+
+    /// Over a side, unless that leads back.
+    #[inline(always)]
+    fn cross_edge(&mut self, side: &FacetEdge, walk: &mut FacetWalk) -> NextFacet {
+        let [from, to] = side.ends;
+        // A facet that has its face of shape 2 goes around the other way.
+        let back = walk.crossed == Some([to, from]) || walk.crossed == Some([from, to]);
+        walk.crossed = Some(side.ends);
+        let across = (!back)
+            .then(|| gauss_map::adjacent_facet(self.cso, side))
+            .flatten();
+        match across {
+            Some(next) if next != walk.features => (Some(next), side.ends),
+            _ => self.leave_facet(walk.features, side, walk.normal),
+        }
+    }
+
+    /// Where the way over a side leads back. Two edges may span no facet at these poses, and any plane
+    /// then: they are left by the vertex that is extreme along `normal`. Else the nearest point lies on the
+    /// side.
+    fn leave_facet(
+        &mut self,
+        features: [Feature; 2],
+        side: &FacetEdge,
+        normal: DVec3,
+    ) -> NextFacet {
+        if let [Feature::Edge(_), Feature::Edge(_)] = features {
+            let [from, _] = side.ends;
+            let vertex = self.cso.support(side.normal, from, self.cost);
+            if side.normal.dot(vertex.w - self.cso.vertex(from).w) > self.tolerance() {
+                return self.restart_at(normal, vertex.ids);
+            }
+        }
+        (None, side.ends)
+    }
+
+    /// To a facet at the vertex that is extreme along `normal`.
+    fn restart_at(&mut self, normal: DVec3, start: [VertexId; 2]) -> NextFacet {
+        let vertex = self.cso.support(normal, start, self.cost);
+        (
+            gauss_map::facet_at_vertex(self.cso, &vertex, normal),
+            [vertex.ids; 2],
+        )
+    }
+}
