@@ -13,7 +13,7 @@ use glam::DVec3;
 use crate::simplex::{DistanceSubalgorithm, Nearest};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Support, VertexId};
-use crate::tolerance::{GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, MIN_DIRECTED_DISTANCE};
+use crate::tolerance::{DEPTH_GAP, GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, MIN_DIRECTED_DISTANCE};
 
 /// Convergence is finite, and even the adversarial families need far fewer iterations; the
 /// bound only guards against a stall that no other test sees.
@@ -116,6 +116,8 @@ pub enum Outcome {
     Separated(SeparatingAxis),
     /// The shapes are disjoint, this near.
     Disjoint(Closest),
+    /// Rounding ended the search: they may be this near, or overlap.
+    Unsure(Closest),
     /// The shapes touch or overlap: the origin lies in this simplex, up to rounding.
     Overlapping(Simplex),
 }
@@ -173,12 +175,10 @@ pub fn test_axis<A: Support, B: Support>(
     }
 }
 
-/// Distance and nearest points, starting from one to three vertices of the Minkowski difference (of more
-/// the first three count, and without any there is no answer to trust); the nearer to the origin they
-/// lie, the fewer the iterations. Ends early, with a separating
-/// axis, when the distance is proved to exceed `max_distance`.
-// Always inlined, here and in what it calls: of answers and vectors that go through memory from one
-// function to the next, each is waited for. It is a tenth of a cold query.
+/// Distance and nearest points, starting from vertices of the Minkowski difference. Only the first three
+/// are used; there must be one. The nearer to the origin they lie, the fewer the iterations. Ends early,
+/// with a separating axis, when the distance is proved to exceed `max_distance`.
+// perf: answers and vectors that go through memory cost a tenth of a cold query.
 #[inline(always)]
 pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
@@ -189,8 +189,7 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
     distance_within::<S, A, B>(cso, start, max_distance, GJK_GAP_OF_SIZE, cost)
 }
 
-/// As [`distance`], which ends as soon as its bounds differ by less than `gap`, relative to the pair's
-/// size.
+/// As [`distance`], with bounds that need not differ by less than `gap`, relative to the pair's size.
 #[inline(always)]
 pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
@@ -229,8 +228,11 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
         }
         let between = norm - lower_bound;
         let converged = between <= GJK_GAP_OF_DISTANCE * norm || between <= absolute_gap;
-        if converged || simplex.contains(&w) {
+        if converged {
             return Outcome::Disjoint(closest(&simplex, &nearest, lower_bound));
+        }
+        if simplex.contains(&w) {
+            return ended(cso, closest(&simplex, &nearest, lower_bound));
         }
         let before = simplex.occupied;
         simplex.push(w);
@@ -239,10 +241,10 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
             return Outcome::Overlapping(simplex);
         }
         // In exact arithmetic the norm decreases strictly; where it does not, rounding has the
-        // last word and the answer at hand is as good as it gets.
+        // last word.
         if next.point.length_squared() >= norm * norm {
             simplex.keep(before);
-            return Outcome::Disjoint(closest(&simplex, &nearest, lower_bound));
+            return ended(cso, closest(&simplex, &nearest, lower_bound));
         }
         nearest = next;
         simplex.keep(nearest.face);
@@ -250,7 +252,18 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
     cost.fallbacks += 1;
     let v = nearest.point;
     let lower_bound = v.dot(cso.support(-v, ids, cost).w) / v.length();
-    Outcome::Disjoint(closest(&simplex, &nearest, lower_bound))
+    ended(cso, closest(&simplex, &nearest, lower_bound))
+}
+
+/// A search that rounding ended: its answer is good if the bounds meet nearly enough. With a nearly flat
+/// simplex they need not, and the direction of its nearest point may be any.
+fn ended<A: Support, B: Support>(cso: &Cso<'_, A, B>, closest: Closest) -> Outcome {
+    let promised = DEPTH_GAP * cso.min_radius() + MIN_DIRECTED_DISTANCE * cso.size();
+    if closest.distance - closest.lower_bound <= promised {
+        Outcome::Disjoint(closest)
+    } else {
+        Outcome::Unsure(closest)
+    }
 }
 
 /// In the first iterations the direction turns so far that a table knows a nearer vertex than the

@@ -26,7 +26,7 @@ pub(crate) use certificate::verdict::Verdict;
 use glam::DVec3;
 
 use crate::epa::{self, DepthSearch, EpaScratch, Penetration, PolytopeCache};
-use crate::gjk::{self, Closest, Outcome, SeparatingAxis};
+use crate::gjk::{self, Closest, Outcome, SeparatingAxis, Simplex};
 use crate::simplex::Preferred;
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
@@ -231,20 +231,39 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         self.max_distance > FACET_WALK_RANGE * self.cso.size()
     }
 
-    /// GJK from vertices of the Minkowski difference, and EPA if the shapes overlap.
+    /// GJK from vertices of the Minkowski difference, and EPA if the shapes overlap, or may.
     fn run_gjk(&mut self, start: &[CsoVertex], stages: [Stage; 2]) -> Option<(Answer, Stage)> {
         match gjk::distance::<Preferred, _, _>(self.cso, start, self.max_distance, self.cost) {
             Outcome::Separated(apart) => Some((Answer::Separated(apart), stages[0])),
             Outcome::Disjoint(closest) => Some((self.near(&closest), stages[0])),
-            Outcome::Overlapping(simplex) => {
-                let mut seeds = EpaSeeds::default();
-                simplex.vertices().for_each(|vertex| seeds.push(*vertex));
-                let seeds = seeds.as_slice();
-                let depth = epa::penetration(self.cso, seeds, self.scratch, self.cost)?;
-                self.store_polytope();
-                Some((self.overlapping(&depth), stages[1]))
+            Outcome::Unsure(closest) => {
+                self.cost.fallbacks += 1;
+                self.run_epa(&closest.simplex, stages[1])
             }
+            Outcome::Overlapping(simplex) => self.run_epa(&simplex, stages[1]),
         }
+    }
+
+    /// EPA from GJK's last simplex. What it finds apart is so by hardly more than rounding.
+    fn run_epa(&mut self, simplex: &Simplex, stage: Stage) -> Option<(Answer, Stage)> {
+        let mut seeds = EpaSeeds::default();
+        simplex.vertices().for_each(|vertex| seeds.push(*vertex));
+        let seeds = seeds.as_slice();
+        let depth = epa::penetration(self.cso, seeds, self.scratch, self.cost)?;
+        self.store_polytope();
+        let answer = self
+            .apart(&depth)
+            .map_or_else(|| self.overlapping(&depth), Answer::Separated);
+        Some((answer, stage))
+    }
+
+    /// The normal of a face that EPA found to separate farther than was asked about.
+    fn apart(&self, depth: &Penetration) -> Option<SeparatingAxis> {
+        (-depth.depth > self.max_distance).then(|| SeparatingAxis {
+            axis: depth.normal,
+            separation: -depth.depth,
+            ids: depth.face[0].ids,
+        })
     }
 
     /// The depth, which may be proved to be the candidate's by a polytope of a previous frame, or by the
@@ -273,17 +292,10 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             DepthSearch::Found(depth) => depth,
             DepthSearch::NotBelow => return Some((Answer::Near(*candidate), gjk[1])),
         };
-        let separation = -depth.depth;
-        let ids = depth.face[0].ids;
-        if separation > self.max_distance {
-            let axis = SeparatingAxis {
-                axis: depth.normal,
-                separation,
-                ids,
-            };
-            return Some((Answer::Separated(axis), gjk[1]));
+        if let Some(apart) = self.apart(&depth) {
+            return Some((Answer::Separated(apart), gjk[1]));
         }
-        if separation > 0.0 {
+        if depth.depth < 0.0 {
             return self.run_gjk(&depth.face, gjk);
         }
         Some((self.overlapping(&depth), gjk[1]))

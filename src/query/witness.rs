@@ -46,7 +46,8 @@ pub(super) fn of_depth<A: Polytope, B: Polytope>(
     };
     let start = depth.face.map(|vertex| apart.vertex(vertex.ids));
     match gjk::distance::<Preferred, _, _>(&apart, &start, f64::INFINITY, cost) {
-        Outcome::Disjoint(closest) => {
+        // Whatever the bounds, its points are on their shapes.
+        Outcome::Disjoint(closest) | Outcome::Unsure(closest) => {
             let simplex = closest.simplex.vertices();
             let features = facet::of_simplex(cso, simplex, depth.normal);
             proximity([closest.on_1, closest.on_2 - way], features)

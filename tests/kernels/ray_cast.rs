@@ -83,7 +83,7 @@ impl<'a> Cast<'a> {
         let mut cost = Cost::default();
         let start = cso.support(DVec3::X, cso.start_vertices(DVec3::X), &mut cost);
         match gjk::distance::<Voronoi, _, _>(&cso, &[start], f64::INFINITY, &mut cost) {
-            Outcome::Disjoint(near) => near.distance,
+            Outcome::Disjoint(near) | Outcome::Unsure(near) => near.distance,
             Outcome::Overlapping(_) => 0.0,
             Outcome::Separated(_) => unreachable!("nothing is beyond infinity"),
         }

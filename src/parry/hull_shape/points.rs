@@ -70,7 +70,7 @@ impl HullShape {
                 (PointProjection::new(true, point), FeatureId::Unknown)
             }
             // Never apart: no distance is farther than infinity.
-            Outcome::Overlapping(_) | Outcome::Separated(_) => {
+            Outcome::Overlapping(_) | Outcome::Unsure(_) | Outcome::Separated(_) => {
                 let (on_face, face) = self.project_to_face(point.as_dvec3());
                 (on_face, FeatureId::Face(face))
             }

@@ -19,7 +19,7 @@ use crate::pose::RelativePose;
 use crate::query::{Answer, PairMemory, Proximity, Query};
 use crate::simplex::Preferred;
 use crate::stats::Cost;
-use crate::support::{Polytope, Support};
+use crate::support::{CsoVertex, Polytope, Support};
 use crate::tolerance::{GJK_CURVED_GAP, GJK_GAP_OF_SIZE};
 
 /// Whether two shapes touch or overlap. `None`, here and below: not a pair for us.
@@ -156,7 +156,12 @@ struct SeparationQuery<'a> {
 
 impl SeparationQuery<'_> {
     /// Of a hull and any convex shape; `gap` is GJK's, relative to their size.
-    fn separation<B: Support>(&self, pair: &Pair<'_, B>, gap: f64) -> Option<Separation> {
+    fn separation<B: Support>(
+        &self,
+        pair: &Pair<'_, B>,
+        gap: f64,
+        workspace: &mut Workspace,
+    ) -> Option<Separation> {
         let pose = valid_pose(pair, self.pos12)?;
         let cso = pair.cso(&pose);
         let cost = &mut Cost::default();
@@ -174,17 +179,23 @@ impl SeparationQuery<'_> {
         };
         let outcome =
             gjk::distance_within::<Preferred, _, _>(&cso, &[vertex], max_distance, gap, cost);
-        Some(match outcome {
-            Outcome::Separated(_) => Separation::Beyond,
-            Outcome::Overlapping(_) => Separation::Overlapping,
-            Outcome::Disjoint(closest) if closest.distance > max_distance => Separation::Beyond,
-            Outcome::Disjoint(closest) => {
-                let points = [closest.on_1, closest.on_2];
-                let near =
-                    KernelFrame::new(pair, &pose).near(closest.normal, points, closest.distance);
-                Separation::of(near, pair.touching(size) + gap * size)
+        let (closest, normal, distance) = match outcome {
+            Outcome::Separated(_) => return Some(Separation::Beyond),
+            Outcome::Overlapping(_) => return Some(Separation::Overlapping),
+            Outcome::Disjoint(closest) => (closest, closest.normal, closest.distance),
+            // As `contact` does.
+            Outcome::Unsure(closest) => {
+                let seeds: Vec<CsoVertex> = closest.simplex.vertices().copied().collect();
+                let depth = epa::penetration(&cso, &seeds, &mut workspace.epa, cost)?;
+                (closest, depth.normal, -depth.depth)
             }
-        })
+        };
+        if distance > max_distance {
+            return Some(Separation::Beyond);
+        }
+        let near =
+            KernelFrame::new(pair, &pose).near(normal, [closest.on_1, closest.on_2], distance);
+        Some(Separation::of(near, pair.touching(size) + gap * size))
     }
 }
 
@@ -198,18 +209,18 @@ impl PairVisitor for SeparationQuery<'_> {
     fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,
-        _: &mut Workspace,
+        workspace: &mut Workspace,
     ) -> Option<Self::Answer> {
-        self.separation(pair, GJK_GAP_OF_SIZE)
+        self.separation(pair, GJK_GAP_OF_SIZE, workspace)
     }
 
     fn visit_curved<B: Support>(
         &mut self,
         pair: &Pair<'_, B>,
         _: &dyn PolygonalFeatureMap,
-        _: &mut Workspace,
+        workspace: &mut Workspace,
     ) -> Option<Self::Answer> {
-        self.separation(pair, GJK_CURVED_GAP)
+        self.separation(pair, GJK_CURVED_GAP, workspace)
     }
 
     fn visit_half_space(
@@ -305,7 +316,7 @@ impl PairVisitor for ContactQuery<'_> {
             pos12: self.pos12,
             max_distance: self.prediction,
         };
-        match query.separation(pair, GJK_CURVED_GAP)? {
+        match query.separation(pair, GJK_CURVED_GAP, workspace)? {
             Separation::Overlapping => {
                 let contact = scaled::contact(pair, features, self.pos12);
                 Some(contact.or_else(|| self.depth(pair, workspace)))
