@@ -1,0 +1,77 @@
+//! Who answers.
+
+#[cfg(feature = "box3d")]
+mod box3d;
+
+use isa_gjk::IsaGjkDispatcher;
+use parry3d::math::{Pose, Real};
+use parry3d::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
+use parry3d::shape::SharedShape;
+use testkit::pair::{self, Manifolds};
+
+use crate::cases::Case;
+
+/// An engine's contact manifold of one pair.
+pub trait Engine {
+    fn name(&self) -> &'static str;
+    /// Brings the manifold up to date, starting from what the engine knows of the last update.
+    fn update(&mut self, pose: &Pose);
+    /// Drops what it knows.
+    fn forget(&mut self);
+    /// The least distance of a contact; `None` without contacts.
+    fn deepest(&self) -> Option<Real>;
+}
+
+/// All engines that were built, with the pair.
+pub fn all(case: &Case) -> Vec<Box<dyn Engine>> {
+    #[allow(unused_mut, reason = "without features nothing is added")]
+    let mut engines: Vec<Box<dyn Engine>> = vec![
+        Box::new(Dispatched::new(
+            "isa-gjk",
+            IsaGjkDispatcher::default(),
+            case,
+        )),
+        Box::new(Dispatched::new("parry", DefaultQueryDispatcher, case)),
+    ];
+    #[cfg(feature = "box3d")]
+    engines.push(Box::new(box3d::Box3d::new(case)));
+    engines
+}
+
+/// A dispatcher of parry's kind.
+struct Dispatched<D> {
+    name: &'static str,
+    dispatcher: D,
+    shapes: [SharedShape; 2],
+    manifolds: Manifolds,
+}
+
+impl<D> Dispatched<D> {
+    fn new(name: &'static str, dispatcher: D, case: &Case) -> Self {
+        Self {
+            name,
+            dispatcher,
+            shapes: case.shapes.clone(),
+            manifolds: Manifolds::new(),
+        }
+    }
+}
+
+impl<D: PersistentQueryDispatcher> Engine for Dispatched<D> {
+    fn name(&self) -> &'static str {
+        self.name
+    }
+
+    fn update(&mut self, pose: &Pose) {
+        pair::update(&self.dispatcher, &self.shapes, pose, &mut self.manifolds);
+    }
+
+    fn forget(&mut self) {
+        self.manifolds.clear();
+    }
+
+    fn deepest(&self) -> Option<Real> {
+        let points = self.manifolds.iter().flat_map(|manifold| &manifold.points);
+        points.map(|point| point.dist).reduce(Real::min)
+    }
+}
