@@ -134,11 +134,13 @@ mod tuning;
 pub use dispatcher::IsaGjkDispatcher;
 pub use hull::{Hull, HullError};
 pub use hull_shape::{HullShape, PreparedShapes};
-pub use stats::{Stage, Stats};
+pub use stats::{Left, Stage, Stats};
 
 /// All that a user of a physics world needs.
 pub mod prelude {
-    pub use crate::{Hull, HullError, HullShape, IsaGjkDispatcher, PreparedShapes, Stage, Stats};
+    pub use crate::{
+        Hull, HullError, HullShape, IsaGjkDispatcher, Left, PreparedShapes, Stage, Stats,
+    };
 }
 
 #[cfg(doctest)]

@@ -68,12 +68,54 @@ impl Stage {
     }
 }
 
+/// Why the contacts of a pair with a hull were left to the fallback dispatcher, or to parry's routine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+#[non_exhaustive]
+pub enum Left {
+    /// A plain hull that cannot be prepared: parry's builder made it flat or not convex, it has fewer than
+    /// four points or too many, or a coordinate is not finite. [`HullShape`](crate::HullShape) names the
+    /// reason.
+    HullNotPrepared,
+    /// The other shape is not one of those that we answer, or is degenerate.
+    OtherShape,
+    /// A cylinder or a cone that is near: parry's routine finds the contacts on our hull.
+    CurvedContact,
+    /// The relative pose is not finite.
+    NotFinite,
+}
+
+impl Left {
+    /// How many reasons there are.
+    pub const COUNT: usize = 4;
+    /// All reasons, in the order of [`Stats::left_to_fallback`].
+    pub const ALL: [Self; Self::COUNT] = [
+        Self::HullNotPrepared,
+        Self::OtherShape,
+        Self::CurvedContact,
+        Self::NotFinite,
+    ];
+
+    /// A short name for tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::HullNotPrepared => "hull not prepared",
+            Self::OtherShape => "other shape",
+            Self::CurvedContact => "cylinder or cone",
+            Self::NotFinite => "pose not finite",
+        }
+    }
+}
+
 /// What the queries of one dispatcher have cost so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Stats {
     /// Queries answered by each stage, indexed like [`Stage::ALL`].
     pub answered: [u64; Stage::COUNT],
+    /// Contact updates of pairs with a hull that were left to the fallback, indexed like [`Left::ALL`].
+    /// Pairs without a hull are not counted.
+    pub left_to_fallback: [u64; Left::COUNT],
     /// GJK iterations and EPA expansions.
     pub iterations: u64,
     /// Support queries, each on one shape.
@@ -93,18 +135,19 @@ impl Stats {
 
     /// The counts since an `earlier` reading.
     pub fn since(&self, earlier: &Self) -> Self {
-        let mut answered = self.answered;
-        for (now, before) in answered.iter_mut().zip(earlier.answered) {
-            *now = now.saturating_sub(before);
-        }
         Self {
-            answered,
+            answered: differences(self.answered, earlier.answered),
+            left_to_fallback: differences(self.left_to_fallback, earlier.left_to_fallback),
             iterations: self.iterations.saturating_sub(earlier.iterations),
             supports: self.supports.saturating_sub(earlier.supports),
             climb_moves: self.climb_moves.saturating_sub(earlier.climb_moves),
             fallbacks: self.fallbacks.saturating_sub(earlier.fallbacks),
         }
     }
+}
+
+fn differences<const N: usize>(now: [u64; N], before: [u64; N]) -> [u64; N] {
+    std::array::from_fn(|i| now[i].saturating_sub(before[i]))
 }
 
 /// The cost of one query, filled in while it runs.
@@ -125,6 +168,7 @@ pub struct Cost {
 #[repr(align(128))]
 struct Shard {
     answered: [AtomicU64; Stage::COUNT],
+    left: [AtomicU64; Left::COUNT],
     iterations: AtomicU64,
     supports: AtomicU64,
     climb_moves: AtomicU64,
@@ -170,11 +214,20 @@ impl SharedStats {
         add(&shard.fallbacks, cost.fallbacks);
     }
 
+    /// Adds one pair that the fallback gets.
+    #[inline]
+    pub fn record_left(&self, why: Left) {
+        add(&self.0[SHARD.with(|s| *s)].left[why as usize], 1);
+    }
+
     /// The sum over all threads.
     pub fn read(&self) -> Stats {
         let mut sum = Stats::default();
         for shard in self.0.iter() {
             for (total, count) in sum.answered.iter_mut().zip(&shard.answered) {
+                *total += count.load(Ordering::Relaxed);
+            }
+            for (total, count) in sum.left_to_fallback.iter_mut().zip(&shard.left) {
                 *total += count.load(Ordering::Relaxed);
             }
             sum.iterations += shard.iterations.load(Ordering::Relaxed);

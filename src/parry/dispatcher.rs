@@ -24,13 +24,49 @@ use crate::stats::{SharedStats, Stats};
 ///
 /// Give it to `NarrowPhase::with_query_dispatcher`, or to `set_query_dispatcher` of a world that
 /// runs already. Clones share their statistics.
-#[derive(Clone, Debug, Default)]
-pub struct IsaGjkDispatcher {
+///
+/// Whatever is not ours goes to the fallback `F`, parry's dispatcher unless you give another one with
+/// [`with_fallback`](Self::with_fallback).
+#[derive(Clone, Debug)]
+pub struct IsaGjkDispatcher<F = DefaultQueryDispatcher> {
+    fallback: F,
     stats: SharedStats,
     pub(crate) epochs: EpochSource,
 }
 
-impl IsaGjkDispatcher {
+impl Default for IsaGjkDispatcher {
+    fn default() -> Self {
+        Self::with_fallback(DefaultQueryDispatcher)
+    }
+}
+
+impl<F> IsaGjkDispatcher<F> {
+    /// A dispatcher that leaves to `fallback` what it does not answer itself: a dispatcher of your own,
+    /// or parry's `QueryDispatcherChain` of several. [`Stats::left_to_fallback`] counts pairs that it gets
+    /// although they have a hull.
+    ///
+    /// The fallback gets whole pairs, and the parts of those composite shapes that we take apart. It gets
+    /// no cylinders and cones that meet hulls: parry's own routine searches these contacts on our hulls.
+    ///
+    /// ```
+    /// use isa_gjk::IsaGjkDispatcher;
+    /// use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
+    /// use rapier3d::prelude::*;
+    ///
+    /// // Yours is asked first about what we leave, and parry's last.
+    /// let yours = DefaultQueryDispatcher;
+    /// let dispatcher = IsaGjkDispatcher::with_fallback(yours.chain(DefaultQueryDispatcher));
+    /// let narrow_phase = NarrowPhase::with_query_dispatcher(dispatcher);
+    /// # let _ = narrow_phase;
+    /// ```
+    pub fn with_fallback(fallback: F) -> Self {
+        Self {
+            fallback,
+            stats: SharedStats::default(),
+            epochs: EpochSource::default(),
+        }
+    }
+
     /// What the queries of this dispatcher and its clones have cost so far.
     pub fn stats(&self) -> Stats {
         self.stats.read()
@@ -85,9 +121,7 @@ impl IsaGjkDispatcher {
     }
 }
 
-const PARRY: DefaultQueryDispatcher = DefaultQueryDispatcher;
-
-impl QueryDispatcher for IsaGjkDispatcher {
+impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
     fn intersection_test(
         &self,
         pos12: &Pose,
@@ -99,7 +133,7 @@ impl QueryDispatcher for IsaGjkDispatcher {
         }
         match parts::intersection_test(self, pos12, g1, g2) {
             Some(intersection) => Ok(intersection),
-            None => PARRY.intersection_test(pos12, g1, g2),
+            None => self.fallback.intersection_test(pos12, g1, g2),
         }
     }
 
@@ -114,7 +148,7 @@ impl QueryDispatcher for IsaGjkDispatcher {
         }
         match parts::distance(self, pos12, g1, g2) {
             Some(distance) => Ok(distance),
-            None => PARRY.distance(pos12, g1, g2),
+            None => self.fallback.distance(pos12, g1, g2),
         }
     }
 
@@ -128,7 +162,7 @@ impl QueryDispatcher for IsaGjkDispatcher {
         let ours = scene::contact(pos12, g1, g2, prediction);
         match ours.or_else(|| parts::contact(self, pos12, g1, g2, prediction)) {
             Some(contact) => Ok(contact),
-            None => PARRY.contact(pos12, g1, g2, prediction),
+            None => self.fallback.contact(pos12, g1, g2, prediction),
         }
     }
 
@@ -142,7 +176,7 @@ impl QueryDispatcher for IsaGjkDispatcher {
         let ours = scene::closest_points(pos12, g1, g2, max_dist);
         match ours.or_else(|| parts::closest_points(self, pos12, g1, g2, max_dist)) {
             Some(points) => Ok(points),
-            None => PARRY.closest_points(pos12, g1, g2, max_dist),
+            None => self.fallback.closest_points(pos12, g1, g2, max_dist),
         }
     }
 
@@ -159,7 +193,9 @@ impl QueryDispatcher for IsaGjkDispatcher {
         }
         match parts::cast_shapes(self, pos12, local_vel12, g1, g2, options) {
             Some(hit) => hit,
-            None => PARRY.cast_shapes(pos12, local_vel12, g1, g2, options),
+            None => self
+                .fallback
+                .cast_shapes(pos12, local_vel12, g1, g2, options),
         }
     }
 
@@ -180,10 +216,11 @@ impl QueryDispatcher for IsaGjkDispatcher {
     }
 }
 
-impl<M, C> PersistentQueryDispatcher<M, C> for IsaGjkDispatcher
+impl<M, C, F> PersistentQueryDispatcher<M, C> for IsaGjkDispatcher<F>
 where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
+    F: PersistentQueryDispatcher<M, C> + PersistentQueryDispatcher,
 {
     fn contact_manifolds(
         &self,
@@ -231,7 +268,7 @@ where
     }
 }
 
-impl IsaGjkDispatcher {
+impl<F> IsaGjkDispatcher<F> {
     /// Brings the manifold of two convex shapes up to date, which are unchanged during `epoch`.
     // In a call the sides would go through memory, which pairs that are apart notice.
     #[inline(always)]
@@ -247,8 +284,10 @@ impl IsaGjkDispatcher {
     where
         M: Default + Clone + Send + Sync,
         C: Default + Copy + Send + Sync,
+        F: PersistentQueryDispatcher<M, C>,
     {
         let (g1, g2) = (operand_1.shape, operand_2.shape);
+        let has_hull = operand_1.is_hull() || operand_2.is_hull();
         let update = UpdateManifold {
             pos12,
             prediction,
@@ -259,10 +298,14 @@ impl IsaGjkDispatcher {
         if pair::visit_operands(operand_1, operand_2, epoch, update).is_some() {
             return Ok(());
         }
+        if has_hull {
+            self.stats.record_left(pair::why_left(pos12, [g1, g2]));
+        }
         let [c1, c2] = constraints;
         c1.with(|c1| {
             c2.with(|c2| {
-                PARRY.contact_manifold_convex_convex(pos12, g1, g2, c1, c2, prediction, manifold)
+                self.fallback
+                    .contact_manifold_convex_convex(pos12, g1, g2, c1, c2, prediction, manifold)
             })
         })
     }

@@ -18,6 +18,7 @@ use crate::parry::hull_cache::{EachProved, Find, HullCache, HullRef};
 use crate::parry::hull_shape::HullShape;
 use crate::pose::RelativePose;
 use crate::primitive::Ball;
+use crate::stats::Left;
 use crate::support::{Cso, Polytope, Support};
 use crate::tolerance::MIN_DIRECTED_DISTANCE;
 
@@ -355,6 +356,24 @@ pub(crate) fn visit_operands<'a, 'b, V: PairVisitor>(
             HullOperand::new(&mut operand_2, epoch, true).visit(operand_1.shape, &mut visitor)
         }
         [false, false] => None,
+    }
+}
+
+/// Why a pair with a hull is not ours.
+#[cold]
+pub(crate) fn why_left(pos12: &Pose, shapes: [&dyn Shape; 2]) -> Left {
+    if !RelativePose::is_valid(pos12) {
+        return Left::NotFinite;
+    }
+    let is_prepared = |shape| {
+        let mut operand = Operand::alone(shape);
+        !operand.is_hull()
+            || ThreadWorkspace::with(|thread| operand.prepare(&mut thread.hulls).is_some())
+    };
+    if shapes.into_iter().all(is_prepared) {
+        Left::OtherShape
+    } else {
+        Left::HullNotPrepared
     }
 }
 

@@ -1,6 +1,5 @@
 //! What rapier keeps about a pair of colliders between frames.
 
-use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::ContactManifoldsWorkspace;
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
@@ -40,7 +39,7 @@ impl Memory {
 
 /// What a manifold without a past says.
 pub fn cold_manifold(
-    dispatcher: &IsaGjkDispatcher,
+    dispatcher: &impl PersistentQueryDispatcher,
     pose: &Pose,
     shapes: [&SharedShape; 2],
     prediction: Real,

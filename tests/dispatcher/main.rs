@@ -8,6 +8,7 @@ mod coherence;
 mod contacts;
 mod curved;
 mod exact_cases;
+mod fallback;
 mod fuzz;
 mod hull_shape;
 mod hull_shape_solid;

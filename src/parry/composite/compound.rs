@@ -6,6 +6,7 @@
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::Pose;
+use parry3d::query::PersistentQueryDispatcher;
 use parry3d::shape::{Compound, Shape};
 
 use crate::parry::composite::sub_manifolds::{SubManifolds, SubShape};
@@ -17,13 +18,14 @@ use crate::parry::pair::Operand;
 const PROOFS: usize = 8;
 
 /// Two compounds.
-pub(crate) fn compounds<M, C>(
-    mut sub_manifolds: SubManifolds<'_, M, C>,
+pub(crate) fn compounds<M, C, F>(
+    mut sub_manifolds: SubManifolds<'_, M, C, F>,
     pos12: &Pose,
     [c1, c2]: [&Compound; 2],
 ) where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
+    F: PersistentQueryDispatcher<M, C>,
 {
     let pos21 = pos12.inverse();
     let mut proved_2 = [LastProved::default(); PROOFS];
@@ -51,8 +53,8 @@ pub(crate) fn compounds<M, C>(
 }
 
 /// A compound and a convex shape; the convex one is the first if `swapped`.
-pub(crate) fn compound_and_convex<M, C>(
-    mut sub_manifolds: SubManifolds<'_, M, C>,
+pub(crate) fn compound_and_convex<M, C, F>(
+    mut sub_manifolds: SubManifolds<'_, M, C, F>,
     pos12: &Pose,
     compound: &Compound,
     convex: &dyn Shape,
@@ -60,6 +62,7 @@ pub(crate) fn compound_and_convex<M, C>(
 ) where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
+    F: PersistentQueryDispatcher<M, C>,
 {
     let place = if swapped { pos12.inverse() } else { *pos12 };
     let whole = convex

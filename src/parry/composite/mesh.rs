@@ -7,6 +7,7 @@
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::Pose;
+use parry3d::query::PersistentQueryDispatcher;
 use parry3d::shape::{
     HeightField, HeightFieldFlags, Shape, TriMesh, TriMeshFlags, Triangle, TrianglePseudoNormals,
 };
@@ -58,8 +59,8 @@ impl<'a> Triangles<'a> {
 }
 
 /// A shape made of triangles and a hull; the hull is the first if `swapped`.
-pub(crate) fn triangles_and_hull<M, C>(
-    mut sub_manifolds: SubManifolds<'_, M, C>,
+pub(crate) fn triangles_and_hull<M, C, F>(
+    mut sub_manifolds: SubManifolds<'_, M, C, F>,
     pos12: &Pose,
     triangles: Triangles<'_>,
     hull: &dyn Shape,
@@ -67,6 +68,7 @@ pub(crate) fn triangles_and_hull<M, C>(
 ) where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
+    F: PersistentQueryDispatcher<M, C>,
 {
     let place = if swapped { pos12.inverse() } else { *pos12 };
     let near = hull.compute_aabb(&place).loosened(sub_manifolds.prediction);

@@ -27,8 +27,8 @@ use mesh::Triangles;
 use sub_manifolds::SubManifolds;
 
 /// Updates the manifolds of a pair in which a shape has parts. `false` if none has.
-pub(crate) fn contact_manifolds<M, C>(
-    dispatcher: &IsaGjkDispatcher,
+pub(crate) fn contact_manifolds<M, C, F>(
+    dispatcher: &IsaGjkDispatcher<F>,
     pos12: &Pose,
     shapes: [&dyn Shape; 2],
     prediction: Real,
@@ -38,6 +38,7 @@ pub(crate) fn contact_manifolds<M, C>(
 where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
+    F: PersistentQueryDispatcher<M, C> + PersistentQueryDispatcher,
 {
     use ShapeType::{Ball, HeightField, TriMesh, Voxels};
     // Parry's routines assert that boxes are not loosened by less than nothing.
@@ -131,8 +132,8 @@ pub(crate) fn reset_to_single<M: Default + Clone, C: Default + Copy>(
 ///
 /// Compounds are ours whether or not they have a hull: to find out would take a look at every part in
 /// every update, however few of them are near.
-fn by_us<M, C>(
-    dispatcher: &IsaGjkDispatcher,
+fn by_us<M, C, F>(
+    dispatcher: &IsaGjkDispatcher<F>,
     pos12: &Pose,
     [s1, s2]: [&dyn Shape; 2],
     prediction: Real,
@@ -142,6 +143,7 @@ fn by_us<M, C>(
 where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
+    F: PersistentQueryDispatcher<M, C>,
 {
     let begin =
         |manifolds, workspace| SubManifolds::new(dispatcher, prediction, manifolds, workspace);

@@ -16,15 +16,13 @@ use parry3d::query::details::{
     intersection_test_shape_voxels, intersection_test_voxels_shape,
 };
 use parry3d::query::{
-    ClosestPoints, Contact, NonlinearRigidMotion, ShapeCastHit, ShapeCastOptions, ShapeDistance,
-    ShapeIntersection, Unsupported,
+    ClosestPoints, Contact, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
+    ShapeCastHit, ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported,
 };
 use parry3d::shape::{Shape, ShapeType};
 
-use crate::parry::dispatcher::IsaGjkDispatcher;
-
 pub(crate) fn intersection_test(
-    us: &IsaGjkDispatcher,
+    us: &impl PersistentQueryDispatcher,
     pos12: &Pose,
     g1: &dyn Shape,
     g2: &dyn Shape,
@@ -46,7 +44,7 @@ pub(crate) fn intersection_test(
 }
 
 pub(crate) fn distance(
-    us: &IsaGjkDispatcher,
+    us: &impl QueryDispatcher,
     pos12: &Pose,
     g1: &dyn Shape,
     g2: &dyn Shape,
@@ -60,7 +58,7 @@ pub(crate) fn distance(
 }
 
 pub(crate) fn contact(
-    us: &IsaGjkDispatcher,
+    us: &impl QueryDispatcher,
     pos12: &Pose,
     g1: &dyn Shape,
     g2: &dyn Shape,
@@ -80,7 +78,7 @@ pub(crate) fn contact(
 }
 
 pub(crate) fn closest_points(
-    us: &IsaGjkDispatcher,
+    us: &impl QueryDispatcher,
     pos12: &Pose,
     g1: &dyn Shape,
     g2: &dyn Shape,
@@ -95,7 +93,7 @@ pub(crate) fn closest_points(
 }
 
 pub(crate) fn cast_shapes(
-    us: &IsaGjkDispatcher,
+    us: &impl QueryDispatcher,
     pos12: &Pose,
     velocity: Vector,
     g1: &dyn Shape,
@@ -135,7 +133,7 @@ pub(crate) struct MovingShape<'a> {
 /// Also of two convex shapes: parry's search for the time of impact asks us how far they are
 /// apart, wherever it looks.
 pub(crate) fn cast_shapes_nonlinear(
-    us: &IsaGjkDispatcher,
+    us: &impl QueryDispatcher,
     movers: [MovingShape<'_>; 2],
     [start, end]: [Real; 2],
     stop_at_penetration: bool,

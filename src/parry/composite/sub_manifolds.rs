@@ -6,7 +6,7 @@
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::ContactManifoldsWorkspace;
-use parry3d::query::{ContactManifold, TypedWorkspaceData};
+use parry3d::query::{ContactManifold, PersistentQueryDispatcher, TypedWorkspaceData};
 use parry3d::shape::Shape;
 
 use crate::parry::composite;
@@ -38,8 +38,8 @@ impl<'a> SubShape<'a> {
 }
 
 /// The manifolds of a pair, while they are brought up to date.
-pub(crate) struct SubManifolds<'a, M, C> {
-    dispatcher: &'a IsaGjkDispatcher,
+pub(crate) struct SubManifolds<'a, M, C, F> {
+    dispatcher: &'a IsaGjkDispatcher<F>,
     pub prediction: Real,
     manifolds: &'a mut Vec<ContactManifold<M, C>>,
     /// How many of them are of this frame; those of parts that meet no more come behind.
@@ -58,15 +58,16 @@ fn key(part_1: u32, part_2: u32) -> u64 {
     u64::from(part_1) << 32 | u64::from(part_2)
 }
 
-impl<'a, M, C> SubManifolds<'a, M, C>
+impl<'a, M, C, F> SubManifolds<'a, M, C, F>
 where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
+    F: PersistentQueryDispatcher<M, C>,
 {
     /// Our workspace, or one of parry's routines for such pairs, says that the manifolds are of
     /// these shapes. Without it they may be of shapes that were here before.
     pub fn new(
-        dispatcher: &'a IsaGjkDispatcher,
+        dispatcher: &'a IsaGjkDispatcher<F>,
         prediction: Real,
         manifolds: &'a mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,

@@ -20,7 +20,7 @@ use crate::parry::pair::{Pair, PairVisitor, Workspace};
 use crate::parry::scaled::Scale;
 use crate::pose::RelativePose;
 use crate::query::{self, Answer, PairMemory, Proximity, Query, Verdict};
-use crate::stats::{Cost, SharedStats, Stage};
+use crate::stats::{Cost, Left, SharedStats, Stage};
 use crate::support::{Cso, Polytope, Support};
 use crate::tolerance::UNCORRECTED;
 use inherit::write_points;
@@ -170,6 +170,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                 return Some(());
             }
         }
+        self.stats.record_left(Left::CurvedContact);
         self.update_by_parry(pair, features);
         Some(())
     }

@@ -1,0 +1,183 @@
+//! What is left to the fallback dispatcher, and how it is counted.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use isa_gjk::{IsaGjkDispatcher, Left};
+use parry3d::math::{Pose, Real, Vector};
+use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints, ShapeCastOptions};
+use parry3d::query::{
+    ClosestPoints, Contact, ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher,
+    QueryDispatcher, ShapeCastHit, ShapeDistance, ShapeIntersection, Unsupported,
+};
+use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, SharedShape};
+use testkit::generate::Rng;
+use testkit::memory::cold_manifold;
+
+/// Supports nothing, and counts what it is asked.
+#[derive(Clone, Default)]
+struct Silent(Arc<AtomicU32>);
+
+impl Silent {
+    fn asked<T>(&self) -> Result<T, Unsupported> {
+        self.0.fetch_add(1, Ordering::Relaxed);
+        Err(Unsupported)
+    }
+}
+
+impl QueryDispatcher for Silent {
+    fn intersection_test(
+        &self,
+        _: &Pose,
+        _: &dyn Shape,
+        _: &dyn Shape,
+    ) -> Result<ShapeIntersection, Unsupported> {
+        self.asked()
+    }
+
+    fn distance(
+        &self,
+        _: &Pose,
+        _: &dyn Shape,
+        _: &dyn Shape,
+    ) -> Result<ShapeDistance, Unsupported> {
+        self.asked()
+    }
+
+    fn contact(
+        &self,
+        _: &Pose,
+        _: &dyn Shape,
+        _: &dyn Shape,
+        _: Real,
+    ) -> Result<Option<Contact>, Unsupported> {
+        self.asked()
+    }
+
+    fn closest_points(
+        &self,
+        _: &Pose,
+        _: &dyn Shape,
+        _: &dyn Shape,
+        _: Real,
+    ) -> Result<ClosestPoints, Unsupported> {
+        self.asked()
+    }
+
+    fn cast_shapes(
+        &self,
+        _: &Pose,
+        _: Vector,
+        _: &dyn Shape,
+        _: &dyn Shape,
+        _: ShapeCastOptions,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        self.asked()
+    }
+
+    fn cast_shapes_nonlinear(
+        &self,
+        _: &NonlinearRigidMotion,
+        _: &dyn Shape,
+        _: &NonlinearRigidMotion,
+        _: &dyn Shape,
+        _: Real,
+        _: Real,
+        _: bool,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        self.asked()
+    }
+}
+
+impl<M, C> PersistentQueryDispatcher<M, C> for Silent {
+    fn contact_manifolds(
+        &self,
+        _: &Pose,
+        _: &dyn Shape,
+        _: &dyn Shape,
+        _: Real,
+        _: &mut Vec<ContactManifold<M, C>>,
+        _: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported> {
+        self.asked()
+    }
+
+    fn contact_manifold_convex_convex(
+        &self,
+        _: &Pose,
+        _: &dyn Shape,
+        _: &dyn Shape,
+        _: Option<&dyn NormalConstraints>,
+        _: Option<&dyn NormalConstraints>,
+        _: Real,
+        _: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported> {
+        self.asked()
+    }
+}
+
+fn hull() -> SharedShape {
+    Rng::new(7).hull(12, 1.0).shape
+}
+
+/// A plate too thin to be a solid in f32.
+fn flat() -> SharedShape {
+    let (corners, faces) = Cuboid::new(Vector::new(1.0, 1.0, 1e-7)).to_trimesh();
+    let flat = ConvexPolyhedron::from_convex_mesh(corners, &faces);
+    SharedShape::new(flat.expect("a closed surface"))
+}
+
+#[test]
+fn only_what_is_not_ours_reaches_the_fallback() {
+    let silent = Silent::default();
+    let dispatcher = IsaGjkDispatcher::with_fallback(silent.clone());
+    let near = Pose::translation(0.4, 0.3, 0.2);
+    let (hull, ball) = (hull(), SharedShape::ball(0.5));
+    let compound = SharedShape::compound(vec![(Pose::IDENTITY, ball.clone())]);
+
+    assert!(cold_manifold(&dispatcher, &near, [&hull, &ball], 0.1).is_some());
+    assert!(dispatcher.distance(&near, &*hull, &*hull).is_ok());
+    assert_eq!(silent.0.load(Ordering::Relaxed), 0, "these are ours");
+
+    assert!(dispatcher.distance(&near, &*ball, &*ball).is_err());
+    assert_eq!(silent.0.load(Ordering::Relaxed), 1);
+    let mut manifolds = Vec::<ContactManifold<(), ()>>::new();
+    let workspace = &mut None;
+    let asked =
+        dispatcher.contact_manifolds(&near, &*compound, &*ball, 0.1, &mut manifolds, workspace);
+    assert!(asked.is_ok(), "taking compounds apart is ours");
+    assert_eq!(
+        silent.0.load(Ordering::Relaxed),
+        2,
+        "their parts may not be"
+    );
+}
+
+#[test]
+fn pairs_with_a_hull_are_counted_by_what_leaves_them() {
+    let (hull, ball) = (hull(), SharedShape::ball(0.5));
+    let near = Pose::translation(0.4, 0.3, 0.2);
+    let nowhere = Pose::translation(Real::NAN, 0.0, 0.0);
+    let degenerate = SharedShape::ball(-1.0);
+    let cases = [
+        (near, [&hull, &ball], None),
+        (near, [&ball, &ball], None),
+        (near, [&hull, &flat()], Some(Left::HullNotPrepared)),
+        (near, [&flat(), &ball], Some(Left::HullNotPrepared)),
+        (near, [&hull, &degenerate], Some(Left::OtherShape)),
+        (
+            near,
+            [&SharedShape::cone(0.5, 0.5), &hull],
+            Some(Left::CurvedContact),
+        ),
+        (nowhere, [&hull, &hull], Some(Left::NotFinite)),
+    ];
+    for (pose, shapes, expected) in cases {
+        let dispatcher = IsaGjkDispatcher::default();
+        let _ = cold_manifold(&dispatcher, &pose, shapes, 0.1);
+        let left = dispatcher.stats().left_to_fallback;
+        let expected = Left::ALL.map(|why| u64::from(Some(why) == expected));
+        let types = shapes.map(|shape| shape.shape_type());
+        assert_eq!(left, expected, "{types:?} at {pose:?}");
+    }
+}
