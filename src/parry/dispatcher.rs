@@ -1,22 +1,18 @@
 //! The plug: rapier's narrow phase asks [`IsaGjkDispatcher`] instead of parry's own dispatcher.
 
-use parry3d::math::{Pose, Real, Vector};
-use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints, ShapeCastOptions};
+use parry3d::math::{Pose, Real};
+use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints};
 use parry3d::query::{
-    ClosestPoints, Contact, ContactManifold, DefaultQueryDispatcher, NonlinearRigidMotion,
-    PersistentQueryDispatcher, QueryDispatcher, ShapeCastHit, ShapeDistance, ShapeIntersection,
-    Unsupported,
+    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, Unsupported,
 };
 use parry3d::shape::Shape;
 
 use crate::parry::composite;
-use crate::parry::composite::scene::{self as parts, MovingShape};
 use crate::parry::constraints::Constraints;
 use crate::parry::hull_cache::Find;
 use crate::parry::hull_cache::epoch::{Epoch, EpochSource};
 use crate::parry::manifold::UpdateManifold;
 use crate::parry::pair::{self, Operand};
-use crate::parry::scene::{cast, separation as scene};
 use crate::stats::{SharedStats, Stats};
 
 /// A query dispatcher that answers pairs with a convex hull itself and passes every other pair
@@ -29,7 +25,7 @@ use crate::stats::{SharedStats, Stats};
 /// [`with_fallback`](Self::with_fallback).
 #[derive(Clone, Debug)]
 pub struct IsaGjkDispatcher<F = DefaultQueryDispatcher> {
-    fallback: F,
+    pub(crate) fallback: F,
     stats: SharedStats,
     pub(crate) epochs: EpochSource,
 }
@@ -118,101 +114,6 @@ impl<F> IsaGjkDispatcher<F> {
     /// ```
     pub fn trim(&self) {
         pair::trim();
-    }
-}
-
-impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
-    fn intersection_test(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-    ) -> Result<ShapeIntersection, Unsupported> {
-        if let Some(intersecting) = scene::intersect(pos12, g1, g2) {
-            return Ok(intersecting.into());
-        }
-        match parts::intersection_test(self, pos12, g1, g2) {
-            Some(intersection) => Ok(intersection),
-            None => self.fallback.intersection_test(pos12, g1, g2),
-        }
-    }
-
-    fn distance(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-    ) -> Result<ShapeDistance, Unsupported> {
-        if let Some(distance) = scene::distance(pos12, g1, g2) {
-            return Ok(distance.into());
-        }
-        match parts::distance(self, pos12, g1, g2) {
-            Some(distance) => Ok(distance),
-            None => self.fallback.distance(pos12, g1, g2),
-        }
-    }
-
-    fn contact(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-        prediction: Real,
-    ) -> Result<Option<Contact>, Unsupported> {
-        let ours = scene::contact(pos12, g1, g2, prediction);
-        match ours.or_else(|| parts::contact(self, pos12, g1, g2, prediction)) {
-            Some(contact) => Ok(contact),
-            None => self.fallback.contact(pos12, g1, g2, prediction),
-        }
-    }
-
-    fn closest_points(
-        &self,
-        pos12: &Pose,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-        max_dist: Real,
-    ) -> Result<ClosestPoints, Unsupported> {
-        let ours = scene::closest_points(pos12, g1, g2, max_dist);
-        match ours.or_else(|| parts::closest_points(self, pos12, g1, g2, max_dist)) {
-            Some(points) => Ok(points),
-            None => self.fallback.closest_points(pos12, g1, g2, max_dist),
-        }
-    }
-
-    fn cast_shapes(
-        &self,
-        pos12: &Pose,
-        local_vel12: Vector,
-        g1: &dyn Shape,
-        g2: &dyn Shape,
-        options: ShapeCastOptions,
-    ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        if let Some(hit) = cast::cast_shapes(pos12, local_vel12, g1, g2, options) {
-            return Ok(hit);
-        }
-        match parts::cast_shapes(self, pos12, local_vel12, g1, g2, options) {
-            Some(hit) => hit,
-            None => self
-                .fallback
-                .cast_shapes(pos12, local_vel12, g1, g2, options),
-        }
-    }
-
-    fn cast_shapes_nonlinear(
-        &self,
-        motion1: &NonlinearRigidMotion,
-        g1: &dyn Shape,
-        motion2: &NonlinearRigidMotion,
-        g2: &dyn Shape,
-        start_time: Real,
-        end_time: Real,
-        stop_at_penetration: bool,
-    ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        let movers =
-            [(motion1, g1), (motion2, g2)].map(|(motion, shape)| MovingShape { motion, shape });
-        parts::cast_shapes_nonlinear(self, movers, [start_time, end_time], stop_at_penetration)
-            .ok_or(Unsupported)
     }
 }
 

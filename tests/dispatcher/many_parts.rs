@@ -75,7 +75,10 @@ fn many_parts_that_meet_others_are_found_in_linear_time() {
     let [few, many] = [12, 48].map(update);
     // Sixteen times as many: a quadratic search takes 256 times as long, and a busy machine has taken
     // 80 times as long for a linear one.
-    assert!(many < 128 * few, "{few:?} for 144 parts, {many:?} for 2,304");
+    assert!(
+        many < 128 * few,
+        "{few:?} for 144 parts, {many:?} for 2,304"
+    );
 }
 
 /// However the pairs of parts come and go, each is answered as if it were new.

@@ -1,4 +1,5 @@
 //! Queries without memory.
 
 pub(crate) mod cast;
+mod dispatch;
 pub(crate) mod separation;

@@ -1,0 +1,109 @@
+//! Queries of scenes: a convex pair is ours if it has a hull, shapes with parts are taken apart, and the
+//! fallback gets the rest.
+
+use parry3d::math::{Pose, Real, Vector};
+use parry3d::query::details::ShapeCastOptions;
+use parry3d::query::{
+    ClosestPoints, Contact, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
+    ShapeCastHit, ShapeDistance, ShapeIntersection, Unsupported,
+};
+use parry3d::shape::Shape;
+
+use crate::parry::composite::scene::{self as parts, MovingShape};
+use crate::parry::dispatcher::IsaGjkDispatcher;
+use crate::parry::scene::{cast, separation as scene};
+
+impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
+    fn intersection_test(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<ShapeIntersection, Unsupported> {
+        if let Some(intersecting) = scene::intersect(pos12, g1, g2) {
+            return Ok(intersecting.into());
+        }
+        match parts::intersection_test(self, pos12, g1, g2) {
+            Some(intersection) => Ok(intersection),
+            None => self.fallback.intersection_test(pos12, g1, g2),
+        }
+    }
+
+    fn distance(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+    ) -> Result<ShapeDistance, Unsupported> {
+        if let Some(distance) = scene::distance(pos12, g1, g2) {
+            return Ok(distance.into());
+        }
+        match parts::distance(self, pos12, g1, g2) {
+            Some(distance) => Ok(distance),
+            None => self.fallback.distance(pos12, g1, g2),
+        }
+    }
+
+    fn contact(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        prediction: Real,
+    ) -> Result<Option<Contact>, Unsupported> {
+        let ours = scene::contact(pos12, g1, g2, prediction);
+        match ours.or_else(|| parts::contact(self, pos12, g1, g2, prediction)) {
+            Some(contact) => Ok(contact),
+            None => self.fallback.contact(pos12, g1, g2, prediction),
+        }
+    }
+
+    fn closest_points(
+        &self,
+        pos12: &Pose,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        max_dist: Real,
+    ) -> Result<ClosestPoints, Unsupported> {
+        let ours = scene::closest_points(pos12, g1, g2, max_dist);
+        match ours.or_else(|| parts::closest_points(self, pos12, g1, g2, max_dist)) {
+            Some(points) => Ok(points),
+            None => self.fallback.closest_points(pos12, g1, g2, max_dist),
+        }
+    }
+
+    fn cast_shapes(
+        &self,
+        pos12: &Pose,
+        local_vel12: Vector,
+        g1: &dyn Shape,
+        g2: &dyn Shape,
+        options: ShapeCastOptions,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        if let Some(hit) = cast::cast_shapes(pos12, local_vel12, g1, g2, options) {
+            return Ok(hit);
+        }
+        match parts::cast_shapes(self, pos12, local_vel12, g1, g2, options) {
+            Some(hit) => hit,
+            None => self
+                .fallback
+                .cast_shapes(pos12, local_vel12, g1, g2, options),
+        }
+    }
+
+    fn cast_shapes_nonlinear(
+        &self,
+        motion1: &NonlinearRigidMotion,
+        g1: &dyn Shape,
+        motion2: &NonlinearRigidMotion,
+        g2: &dyn Shape,
+        start_time: Real,
+        end_time: Real,
+        stop_at_penetration: bool,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        let movers =
+            [(motion1, g1), (motion2, g2)].map(|(motion, shape)| MovingShape { motion, shape });
+        parts::cast_shapes_nonlinear(self, movers, [start_time, end_time], stop_at_penetration)
+            .ok_or(Unsupported)
+    }
+}
