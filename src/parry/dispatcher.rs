@@ -171,7 +171,7 @@ where
 
 impl<F> IsaGjkDispatcher<F> {
     /// Brings the manifold of two convex shapes up to date, which are unchanged during `epoch`.
-    // In a call the sides would go through memory, which pairs that are apart notice.
+    // perf: in a call the operands would go through memory, which pairs that are apart notice.
     #[inline(always)]
     pub(crate) fn update_manifold<'a, 'b, M, C>(
         &self,

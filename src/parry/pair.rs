@@ -317,7 +317,7 @@ pub(crate) fn visit<V: PairVisitor>(
 }
 
 /// As [`visit`], for shapes that are unchanged during `epoch`.
-// In a call the sides would go through memory, which pairs that are apart notice.
+// perf: in a call the operands would go through memory, which pairs that are apart notice.
 #[inline(always)]
 pub(crate) fn visit_operands<'a, 'b, V: PairVisitor>(
     mut operand_1: Operand<'a, impl Find<'a>>,

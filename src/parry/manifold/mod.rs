@@ -44,7 +44,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
 
     const CURVED: bool = true;
 
-    // In a call the pair would go through memory, which small queries notice.
+    // perf: in a call the pair would go through memory, which small queries notice.
     #[inline(always)]
     fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, workspace: &mut Workspace) -> Option<()> {
         if !RelativePose::is_valid(self.pos12) {

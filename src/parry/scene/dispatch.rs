@@ -11,7 +11,7 @@ use parry3d::shape::Shape;
 
 use crate::parry::composite::scene::{self as parts, MovingShape};
 use crate::parry::dispatcher::IsaGjkDispatcher;
-use crate::parry::scene::{cast, separation as scene};
+use crate::parry::scene::{cast, contact, separation as scene};
 
 impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
     fn intersection_test(
@@ -51,7 +51,7 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         g2: &dyn Shape,
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
-        let ours = scene::contact(pos12, g1, g2, prediction);
+        let ours = contact::contact(pos12, g1, g2, prediction);
         match ours.or_else(|| parts::contact(self, pos12, g1, g2, prediction)) {
             Some(contact) => Ok(contact),
             None => self.fallback.contact(pos12, g1, g2, prediction),

@@ -1,6 +1,6 @@
-//! Queries without memory: distance, contact, closest points and intersection of hulls.
+//! Queries without memory: distance, closest points and intersection of hulls.
 //!
-//! Only `contact` asks how deep shapes overlap; the others end with GJK. Shapes that are apart by no more
+//! Only `contact` needs to know how deep shapes overlap; these end with GJK. Shapes that are apart by no more
 //! than [`MIN_DIRECTED_DISTANCE`](crate::tolerance::MIN_DIRECTED_DISTANCE) touch, for all of them.
 
 use glam::DVec3;
@@ -14,9 +14,8 @@ use crate::parry::convert::HalfSpace;
 use crate::parry::half_space;
 use crate::parry::manifold::record::ordered;
 use crate::parry::pair::{self, Pair, PairVisitor, Workspace};
-use crate::parry::scaled;
 use crate::pose::RelativePose;
-use crate::query::{Answer, PairMemory, Proximity, Query};
+use crate::query::{PairMemory, Proximity};
 use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{CsoVertex, Polytope, Support};
@@ -54,17 +53,6 @@ pub(crate) fn closest_points(
     })
 }
 
-/// The deepest contact of shapes that overlap or are at most `prediction` apart.
-pub(crate) fn contact(
-    pos12: &Pose,
-    shape_1: &dyn Shape,
-    shape_2: &dyn Shape,
-    prediction: Real,
-) -> Option<Option<Contact>> {
-    let query = ContactQuery { pos12, prediction };
-    pair::visit(shape_1, shape_2, query)
-}
-
 /// The nearest points of a pair, its rounded borders accounted for. Normals and points are in
 /// their own shapes' frames.
 pub(crate) struct CallerProximity {
@@ -78,7 +66,7 @@ impl CallerProximity {
         frame.near(near.normal, [near.on_1, near.on_2], near.signed_distance)
     }
 
-    fn contact(&self) -> Contact {
+    pub(super) fn contact(&self) -> Contact {
         let [p1, p2] = self.points.map(|p| p.as_vec3());
         let [n1, n2] = self.normals.map(|n| n.as_vec3());
         Contact::new(p1, p2, n1, n2, self.signed_distance as Real)
@@ -116,7 +104,7 @@ impl<'a> KernelFrame<'a> {
 }
 
 /// What lies between two shapes.
-enum Separation {
+pub(super) enum Separation {
     /// Nothing: they touch or overlap.
     Overlapping,
     /// A gap, and where it is narrowest.
@@ -149,14 +137,14 @@ fn separation(
     pair::visit(shape_1, shape_2, query)
 }
 
-struct SeparationQuery<'a> {
-    pos12: &'a Pose,
-    max_distance: Real,
+pub(super) struct SeparationQuery<'a> {
+    pub pos12: &'a Pose,
+    pub max_distance: Real,
 }
 
 impl SeparationQuery<'_> {
     /// Of a hull and any convex shape; `gap` is GJK's, relative to their size.
-    fn separation<B: Support>(
+    pub fn separation<B: Support>(
         &self,
         pair: &Pair<'_, B>,
         gap: f64,
@@ -237,12 +225,12 @@ impl PairVisitor for SeparationQuery<'_> {
     }
 }
 
-fn valid_pose<B>(pair: &Pair<'_, B>, pos12: &Pose) -> Option<RelativePose> {
+pub(super) fn valid_pose<B>(pair: &Pair<'_, B>, pos12: &Pose) -> Option<RelativePose> {
     RelativePose::is_valid(pos12).then(|| pair.pose(pos12))
 }
 
 /// Where a hull is deepest in a half-space, or `None` if it is farther away than `max_distance`.
-fn over_half_space(
+pub(super) fn over_half_space(
     pair: &Pair<'_, HalfSpace>,
     pos12: &Pose,
     max_distance: Real,
@@ -255,83 +243,4 @@ fn over_half_space(
     let deepest = half_space::deepest(pair, &pose, &PairMemory::None, &mut Cost::default());
     let is_near = deepest.signed_distance <= max_distance;
     Some(is_near.then(|| CallerProximity::of_proximity(&deepest, &KernelFrame::new(pair, &pose))))
-}
-
-struct ContactQuery<'a> {
-    pos12: &'a Pose,
-    prediction: Real,
-}
-
-impl ContactQuery<'_> {
-    /// The contact of shapes that touch or overlap, by EPA.
-    fn depth<B: Support>(&self, pair: &Pair<'_, B>, workspace: &mut Workspace) -> Option<Contact> {
-        let pose = valid_pose(pair, self.pos12)?;
-        let cost = &mut Cost::default();
-        let found = epa::penetration(&pair.cso(&pose), &[], &mut workspace.epa, cost)?;
-        let points = [found.on_1, found.on_2];
-        let near = KernelFrame::new(pair, &pose).near(found.normal, points, -found.depth);
-        Some(near.contact())
-    }
-}
-
-impl PairVisitor for ContactQuery<'_> {
-    type Answer = Option<Contact>;
-
-    const HALF_SPACES: bool = true;
-
-    const CURVED: bool = true;
-
-    fn visit<B: Polytope>(
-        &mut self,
-        pair: &Pair<'_, B>,
-        workspace: &mut Workspace,
-    ) -> Option<Self::Answer> {
-        let pose = valid_pose(pair, self.pos12)?;
-        let cso = pair.cso(&pose);
-        let (answer, _) = Query {
-            cso: &cso,
-            max_distance: pair.core_distance(self.prediction, cso.size()),
-            polytope_cache: None,
-            scratch: &mut workspace.epa,
-            cost: &mut Cost::default(),
-        }
-        .run(&PairMemory::None)?;
-        Some(match answer {
-            Answer::Separated(_) => None,
-            Answer::Near(near) => {
-                let frame = KernelFrame::new(pair, &pose);
-                Some(CallerProximity::of_proximity(&near, &frame).contact())
-            }
-        })
-    }
-
-    /// How deep they overlap is parry's to say. Where they only touch it may not know.
-    fn visit_curved<B: Support>(
-        &mut self,
-        pair: &Pair<'_, B>,
-        features: &dyn PolygonalFeatureMap,
-        workspace: &mut Workspace,
-    ) -> Option<Self::Answer> {
-        let query = SeparationQuery {
-            pos12: self.pos12,
-            max_distance: self.prediction,
-        };
-        match query.separation(pair, GJK_CURVED_GAP, workspace)? {
-            Separation::Overlapping => {
-                let contact = scaled::contact(pair, features, self.pos12);
-                Some(contact.or_else(|| self.depth(pair, workspace)))
-            }
-            Separation::Within(near) => Some(Some(near.contact())),
-            Separation::Beyond => Some(None),
-        }
-    }
-
-    fn visit_half_space(
-        &mut self,
-        pair: &Pair<'_, HalfSpace>,
-        _: &mut Workspace,
-    ) -> Option<Self::Answer> {
-        let near = over_half_space(pair, self.pos12, self.prediction)?;
-        Some(near.map(|near| near.contact()))
-    }
 }

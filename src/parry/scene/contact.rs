@@ -1,0 +1,107 @@
+//! The deepest contact of two shapes, without memory.
+
+use parry3d::math::{Pose, Real};
+use parry3d::query::Contact;
+use parry3d::shape::{PolygonalFeatureMap, Shape};
+
+use crate::epa;
+use crate::parry::convert::HalfSpace;
+use crate::parry::pair::{self, Pair, PairVisitor, Workspace};
+use crate::parry::scaled;
+use crate::parry::scene::separation::{
+    CallerProximity, KernelFrame, Separation, SeparationQuery, over_half_space, valid_pose,
+};
+use crate::query::{Answer, PairMemory, Query};
+use crate::stats::Cost;
+use crate::support::{Polytope, Support};
+use crate::tolerance::GJK_CURVED_GAP;
+
+/// The deepest contact of shapes that overlap or are at most `prediction` apart.
+pub(crate) fn contact(
+    pos12: &Pose,
+    shape_1: &dyn Shape,
+    shape_2: &dyn Shape,
+    prediction: Real,
+) -> Option<Option<Contact>> {
+    let query = ContactQuery { pos12, prediction };
+    pair::visit(shape_1, shape_2, query)
+}
+
+struct ContactQuery<'a> {
+    pos12: &'a Pose,
+    prediction: Real,
+}
+
+impl ContactQuery<'_> {
+    /// The contact of shapes that touch or overlap, by EPA.
+    fn depth<B: Support>(&self, pair: &Pair<'_, B>, workspace: &mut Workspace) -> Option<Contact> {
+        let pose = valid_pose(pair, self.pos12)?;
+        let cost = &mut Cost::default();
+        let found = epa::penetration(&pair.cso(&pose), &[], &mut workspace.epa, cost)?;
+        let points = [found.on_1, found.on_2];
+        let near = KernelFrame::new(pair, &pose).near(found.normal, points, -found.depth);
+        Some(near.contact())
+    }
+}
+
+impl PairVisitor for ContactQuery<'_> {
+    type Answer = Option<Contact>;
+
+    const HALF_SPACES: bool = true;
+
+    const CURVED: bool = true;
+
+    fn visit<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        workspace: &mut Workspace,
+    ) -> Option<Self::Answer> {
+        let pose = valid_pose(pair, self.pos12)?;
+        let cso = pair.cso(&pose);
+        let (answer, _) = Query {
+            cso: &cso,
+            max_distance: pair.core_distance(self.prediction, cso.size()),
+            polytope_cache: None,
+            scratch: &mut workspace.epa,
+            cost: &mut Cost::default(),
+        }
+        .run(&PairMemory::None)?;
+        Some(match answer {
+            Answer::Separated(_) => None,
+            Answer::Near(near) => {
+                let frame = KernelFrame::new(pair, &pose);
+                Some(CallerProximity::of_proximity(&near, &frame).contact())
+            }
+        })
+    }
+
+    /// How deep they overlap is parry's to say. Where they only touch it may not know.
+    fn visit_curved<B: Support>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        features: &dyn PolygonalFeatureMap,
+        workspace: &mut Workspace,
+    ) -> Option<Self::Answer> {
+        let query = SeparationQuery {
+            pos12: self.pos12,
+            max_distance: self.prediction,
+        };
+        match query.separation(pair, GJK_CURVED_GAP, workspace)? {
+            Separation::Overlapping => {
+                let contact = scaled::contact(pair, features, self.pos12);
+                Some(contact.or_else(|| self.depth(pair, workspace)))
+            }
+            Separation::Within(near) => Some(Some(near.contact())),
+            Separation::Beyond => Some(None),
+        }
+    }
+
+    fn visit_half_space(
+        &mut self,
+        pair: &Pair<'_, HalfSpace>,
+        _: &mut Workspace,
+    ) -> Option<Self::Answer> {
+        let near = over_half_space(pair, self.pos12, self.prediction)?;
+        Some(near.map(|near| near.contact()))
+    }
+}
