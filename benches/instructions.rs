@@ -4,15 +4,22 @@
 //! depend on the compiler a little, on the machine hardly.
 //!
 //! Each case runs twice in a process of its own under valgrind, over a short and a long part of
-//! its trajectory: the difference is free of the start.
+//! its frames: the difference is free of the start.
+//!
+//! - `separated`, `touching`, `shallow` (1 % deep), `deep` (20 %): two hulls of so many random vertices
+//!   on a trajectory.
+//! - `resting`: a prism of so many vertices on another one, trembling by thousandths of a millimetre.
+//! - `new`: in each frame another hull of so many vertices meets one that is known.
+//! - `compound`: a hull of eight vertices slides over a compound of so many boxes as hulls.
 
 use std::collections::BTreeMap;
 use std::process::{Command, ExitCode};
 
 use isa_gjk::IsaGjkDispatcher;
-use parry3d::math::Pose;
+use parry3d::math::{Pose, Rotation, Vector};
 use parry3d::shape::SharedShape;
-use testkit::pair::{FRAMES, GAPS, Manifolds, VERTICES, hull, trajectory, update};
+use testkit::pair::{FRAMES, GAPS, Manifolds, hull, trajectory, update};
+use testkit::scenes::hulls;
 
 /// What another minor version of the compiler may cost.
 const TOLERANCE: f64 = 0.05;
@@ -20,14 +27,26 @@ const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.j
 /// Frames of the short run; the long one has them all.
 const SHORT: usize = 40;
 
+/// What is counted, and at which numbers of vertices or parts.
+const CASES: [(&str, &[usize]); 7] = [
+    ("separated", &VERTICES),
+    ("touching", &VERTICES),
+    ("shallow", &VERTICES),
+    ("deep", &VERTICES),
+    ("resting", &[8, 16, 32, 64]),
+    ("new", &[12, 60]),
+    ("compound", &[9, 64]),
+];
+const VERTICES: [usize; 7] = [8, 10, 16, 32, 100, 300, 1000];
+
 type Counts = BTreeMap<String, u64>;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    if let [flag, gap, vertices, frames] = &arguments[..]
+    if let [flag, case, size, frames] = &arguments[..]
         && flag == "--run"
     {
-        run(parse(gap), parse(vertices), parse(frames));
+        run(case, parse(size), parse(frames));
         return ExitCode::SUCCESS;
     }
     let counts = match count_all() {
@@ -49,13 +68,64 @@ fn parse(number: &str) -> usize {
     number.parse().expect("a number, from count()")
 }
 
-/// Updates the manifold of two hulls along their trajectory.
-fn run(gap: usize, vertices: usize, frames: usize) {
-    let shapes = [hull(vertices, 1), hull(vertices, 2)];
+/// Updates manifolds of a pair in each of so many frames.
+fn run(case: &str, size: usize, frames: usize) {
     let dispatcher = IsaGjkDispatcher::default();
     let mut manifolds = Manifolds::new();
-    for pose in &trajectory(&shapes, GAPS[gap].1, 1.0)[..frames] {
-        measured_update(&dispatcher, &shapes, pose, &mut manifolds);
+    for (shapes, pose) in &pairs(case, size)[..frames] {
+        if case == "new" {
+            manifolds.clear();
+        }
+        measured_update(&dispatcher, shapes, pose, &mut manifolds);
+    }
+}
+
+/// The shapes of each frame, and where the second one is.
+fn pairs(case: &str, size: usize) -> Vec<([SharedShape; 2], Pose)> {
+    let along = |shapes: [SharedShape; 2], poses: Vec<Pose>| {
+        let with_shapes = |pose| (shapes.clone(), pose);
+        poses.into_iter().map(with_shapes).collect()
+    };
+    match case {
+        "resting" => {
+            let sides = size as u32 / 2;
+            let shapes = [0.5, 0.4].map(|height| hulls::prism(sides, height).expect("a prism"));
+            let trembling = |frame: usize| {
+                let [a, b] = [0.7, 1.1].map(|rate| 1e-6 * (rate * frame as f32).sin());
+                let turn = Rotation::from_scaled_axis(Vector::new(a, 0.3, b));
+                Pose::from_parts(Vector::new(0.1 + b, 0.898 + a, 0.05), turn)
+            };
+            along(shapes, (0..FRAMES).map(trembling).collect())
+        }
+        "new" => {
+            let known = hull(size, 1);
+            let pose = Pose::translation(1.2, 0.9, 0.0);
+            let pair = |frame| ([known.clone(), hull(size, 2 + frame as u128)], pose);
+            (0..FRAMES).map(pair).collect()
+        }
+        "compound" => {
+            let half = Vector::new(0.5, 0.2, 0.5);
+            let tile = hulls::cuboid(half).expect("a box");
+            let side = size.isqrt();
+            let part = |i: usize| {
+                let place = Vector::new((i % side) as f32, 0.0, (i / side) as f32);
+                (Pose::from_parts(place, Rotation::IDENTITY), tile.clone())
+            };
+            let tiles = SharedShape::compound((0..size).map(part).collect());
+            let small = hulls::cuboid(Vector::splat(0.3)).expect("a box");
+            let sliding = |frame: usize| {
+                let x = 0.2 + (side as f32 - 1.4) * frame as f32 / FRAMES as f32;
+                Pose::translation(x, 0.495, 0.4)
+            };
+            along([tiles, small], (0..FRAMES).map(sliding).collect())
+        }
+        _ => {
+            let gap = GAPS.iter().find(|(name, _)| *name == case);
+            let (_, gap) = gap.expect("a case");
+            let shapes = [hull(size, 1), hull(size, 2)];
+            let poses = trajectory(&shapes, *gap, 1.0);
+            along(shapes, poses)
+        }
     }
 }
 
@@ -72,18 +142,18 @@ fn measured_update(
 
 fn count_all() -> Result<Counts, String> {
     let mut counts = Counts::new();
-    for (gap, (name, _)) in GAPS.iter().enumerate() {
-        for vertices in VERTICES {
-            let [short, long] = [SHORT, FRAMES].map(|frames| count(gap, vertices, frames));
+    for (case, sizes) in CASES {
+        for &size in sizes {
+            let [short, long] = [SHORT, FRAMES].map(|frames| count(case, size, frames));
             let each = (long? - short?) / (FRAMES - SHORT) as u64;
-            counts.insert(format!("{name}/{vertices}"), each);
+            counts.insert(format!("{case}/{size}"), each);
         }
     }
     Ok(counts)
 }
 
 /// The instructions of [`measured_update`] and all that it calls.
-fn count(gap: usize, vertices: usize, frames: usize) -> Result<u64, String> {
+fn count(case: &str, size: usize, frames: usize) -> Result<u64, String> {
     let this = std::env::current_exe().map_err(|e| e.to_string())?;
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
@@ -91,8 +161,8 @@ fn count(gap: usize, vertices: usize, frames: usize) -> Result<u64, String> {
         .arg(this)
         .args([
             "--run".to_owned(),
-            gap.to_string(),
-            vertices.to_string(),
+            case.to_owned(),
+            size.to_string(),
             frames.to_string(),
         ])
         .output()
