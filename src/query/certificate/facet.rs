@@ -27,6 +27,7 @@ use crate::query::Proximity;
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
 use crate::tolerance::PARALLEL_EDGES;
+use crate::tuning::SHALLOW;
 
 /// A part of a polytope's boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -175,9 +176,11 @@ impl FacetTest {
         };
         let apex = p.center() - q_pose.point_to_1(q.center());
         let depth = -signed_distance - self.tolerance;
-        let inset = inset(p, face, normal, on_q, signed_distance);
-        if inset > 0.0 && (depth <= 0.0 || cone_contains_ball(inset, depth, apex, normal)) {
-            return Verdict::Certified(certified);
+        if depth < SHALLOW * p.radius() {
+            let inset = inset(p, face, normal, on_q, signed_distance);
+            if inset > 0.0 && (depth <= 0.0 || cone_contains_ball(inset, depth, apex, normal)) {
+                return Verdict::Certified(certified);
+            }
         }
         let corners = p.face_points(face).map(|corner| corner - on_q);
         if let Some(side) = edge_outside_origin(corners.clone(), normal, self.tolerance) {

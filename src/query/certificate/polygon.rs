@@ -69,11 +69,14 @@ pub(in crate::query) fn cone_contains_ball(
     apex: DVec3,
     normal: DVec3,
 ) -> bool {
+    if inset <= depth.max(0.0) {
+        return false;
+    }
     let beneath = -apex.dot(normal);
     let aside = (apex + normal * beneath).length();
     let [inset_squared, depth_squared] = [inset * inset, depth * depth];
     let at_angle = beneath * (inset_squared - depth_squared) - 2.0 * aside * inset * depth;
-    inset > 0.0 && beneath > 0.0 && at_angle >= depth * (inset_squared + depth_squared)
+    beneath > 0.0 && at_angle >= depth * (inset_squared + depth_squared)
 }
 
 /// A side of a polygon.
