@@ -16,6 +16,7 @@ use wide::f32x4;
 use super::polygon::{EdgeLanes, LANES, PolygonRows};
 use super::sectors;
 use crate::map_pair::map_pair;
+use crate::support::VertexId;
 
 /// From so many pairs of sides on, only near ones are compared.
 const MANY: usize = 1200;
@@ -29,6 +30,8 @@ pub(super) enum VertexOrigin {
     Window(u16),
     /// A side of the window crossing a side of the clipped polygon.
     Crossing(u16, u16),
+    /// A vertex of the first or the second shape, of a face beside the one in contact.
+    Beside(usize, VertexId),
 }
 
 /// The two polygons, and the corners of their intersection.
@@ -40,6 +43,8 @@ pub(super) struct Clipper {
     pub subject: PolygonRows,
     /// Of the last intersection.
     pub corners: ClipVertices,
+    /// Vertices that were added to these.
+    beside: Vec<(usize, VertexId)>,
 }
 
 impl Clipper {
@@ -48,6 +53,7 @@ impl Clipper {
     pub fn intersect(&mut self) {
         let subject = self.subject.count;
         self.corners.count = 0;
+        self.beside.clear();
         if self.window.count <= LANES && (3..=LANES).contains(&subject) {
             self.intersect_few();
         } else if self.window.count * subject < MANY || !self.intersect_sectors() {
@@ -90,6 +96,7 @@ impl Clipper {
             window,
             subject,
             corners,
+            ..
         } = self;
         let width = subject.width();
         let subject_source = window.width() * width;
@@ -118,6 +125,27 @@ impl Clipper {
         }
     }
 
+    /// Adds a vertex of one shape at a place of the contact plane, if it is inside of the other's polygon.
+    pub fn add_beside(&mut self, side: usize, vertex: VertexId, [x, y]: [f32x4; 2]) {
+        let is_inside = if side == 0 {
+            self.subject.count > 2 && self.subject.rows().iter().all(|row| row.contains(x, y))
+        } else {
+            let rows = self.window.rows();
+            rows.iter().all(|row| row.holds_as_window(x, y))
+        };
+        if is_inside {
+            let source = self.first_beside() + self.beside.len();
+            self.beside.push((side, vertex));
+            self.corners.push_masked(1, source, &[x], &[y]);
+        }
+    }
+
+    /// The source of the first vertex that is added.
+    fn first_beside(&self) -> usize {
+        let (window, subject) = (self.window.width(), self.subject.width());
+        window * subject + subject + window
+    }
+
     /// Where a corner of the intersection comes from.
     #[inline]
     pub fn origin(&self, corner: usize) -> VertexOrigin {
@@ -128,8 +156,11 @@ impl Clipper {
             VertexOrigin::Crossing((source / width) as u16, (source % width) as u16)
         } else if source - crossings < width {
             VertexOrigin::Subject((source - crossings) as u16)
-        } else {
+        } else if source < self.first_beside() {
             VertexOrigin::Window((source - crossings - width) as u16)
+        } else {
+            let (side, vertex) = self.beside[source - self.first_beside()];
+            VertexOrigin::Beside(side, vertex)
         }
     }
 }

@@ -4,9 +4,11 @@
 //! A face with neighbours that lie nearly in its plane is taken together with them. Both are
 //! projected along the contact normal onto one plane, where their polygons are intersected as
 //! wholes. Every corner of the intersection is a contact: its points lie on the two surfaces, on
-//! one line along the normal. The witness of the query always stays, first in the list; so the
-//! manifold's deepest point is the query's answer.
+//! one line along the normal. Shapes that are pressed into each other have further contacts, at
+//! corners of the faces beside these. The witness of the query always stays, first in the list; so
+//! the manifold's deepest point is the query's answer.
 
+mod beside;
 mod clip;
 mod contact_frame;
 mod contacts;
@@ -22,7 +24,7 @@ use glam::Vec2;
 use crate::query::Proximity;
 use crate::support::{Cso, Polytope};
 use crate::tolerance::SAME_DEPTH;
-use crate::tuning::SAME_POINT;
+use crate::tuning::{PRESSED, SAME_POINT};
 use clip::Clipper;
 use contact_frame::FaceHeight;
 use patch::ContactPatch;
@@ -100,13 +102,32 @@ pub fn contacts<A: Polytope, B: Polytope>(
         candidates,
     } = scratch;
     let patch = ContactPatch::new(cso, proximity, proximity.normal, planes);
-    let Some(patch) = &patch else {
+    let Some(mut patch) = patch else {
         return Contacts::witness(proximity, cso.pose);
     };
     // Along the query's normal nothing is deeper than the query's answer.
     let least = proximity.signed_distance;
     let scale = cso.min_radius();
     patch.clip(cso, clipper);
+    let mut selection = choose(&patch, clipper, candidates, [least, max_distance], scale);
+    let is_pressed = least < -PRESSED * scale;
+    if is_pressed && selection.len < MAX_POINTS && patch.widen(cso, proximity, clipper) {
+        selection = choose(&patch, clipper, candidates, [least, max_distance], scale);
+    }
+    let witness = (least, proximity.features);
+    patch.contacts(cso, witness, (clipper, candidates), &selection)
+}
+
+/// Chooses among the corners of the patch, and the witness, which is `least` deep. Corners nearer than
+/// `max_distance` come first. `scale` is the radius of the smaller shape.
+#[inline(always)]
+fn choose(
+    patch: &ContactPatch<'_>,
+    clipper: &Clipper,
+    candidates: &mut Candidates,
+    [least, max_distance]: [f64; 2],
+    scale: f64,
+) -> Selection {
     let corners = &clipper.corners;
     let distances = |_, x, y| patch.distances(x, y);
     let range = f32::NEG_INFINITY..=max_distance as f32;
@@ -126,8 +147,7 @@ pub fn contacts<A: Polytope, B: Polytope>(
     let first_at = first.map_or(Vec2::ZERO, |corner| corners.at(corner));
     selection.push_all(candidates.spread_out(corners, first_at, same));
     selection.fill_up(candidates);
-    let witness = (least, proximity.features);
-    patch.contacts(cso, witness, (clipper, candidates), &selection)
+    selection
 }
 
 #[cfg(test)]

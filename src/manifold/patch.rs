@@ -4,22 +4,24 @@ use glam::{DVec3, Vec2};
 use wide::f32x4;
 
 use super::Selection;
+use super::beside;
 use super::clip::{Clipper, VertexOrigin};
 use super::contact_frame::{ContactFrame, FaceHeight, PlaneProjection};
 use super::contacts::{Contacts, MAX_POINTS};
-use super::polygon::lane_mask;
+use super::polygon::{LANES, lane_mask};
 use super::reduce::Candidates;
 use crate::query::{Feature, Proximity};
 use crate::support::{Cso, FaceId, Polytope};
 use crate::tuning::LEVEL_SLOPE;
 
-/// The surface of one shape: the face in contact, or all faces of the cluster that it belongs to.
+/// The surface of one shape: the face in contact, or all faces of the cluster that it belongs to, or
+/// those beside it.
 struct ContactSurface<'s> {
     /// Of the face or around the cluster.
     polygon: FaceId,
     plane: FaceHeight,
-    /// Those of the other faces of the cluster.
-    more: &'s [FaceHeight],
+    /// Those of the other faces.
+    more: &'s mut Vec<FaceHeight>,
     /// Of the outward normal along the contact normal.
     sign: f32,
 }
@@ -67,7 +69,7 @@ impl<'s> ContactSurface<'s> {
     #[inline(always)]
     fn heights(&self, x: f32x4, y: f32x4) -> f32x4 {
         let mut heights = self.plane.heights(x, y);
-        for plane in self.more {
+        for plane in self.more.iter() {
             let others = plane.heights(x, y) * self.sign;
             heights = others.fast_min(heights * self.sign) * self.sign;
         }
@@ -79,7 +81,7 @@ impl<'s> ContactSurface<'s> {
     fn face_at(&self, at: Vec2) -> FaceId {
         let mut height = self.plane.height(at);
         let mut face = self.plane.face;
-        for plane in self.more {
+        for plane in self.more.iter() {
             let other = plane.height(at);
             if other * self.sign < height * self.sign {
                 (height, face) = (other, plane.face);
@@ -133,6 +135,46 @@ impl<'s> ContactPatch<'s> {
             projection_2.flatten(shape_2.face_points_x4(f2, numbers))
         });
         clipper.intersect();
+    }
+
+    /// Takes the faces beside those in contact into both surfaces, and adds their corners inside of the
+    /// other shape to those of the intersection. Returns whether there are any.
+    #[cold]
+    #[inline(never)]
+    pub fn widen<A: Polytope, B: Polytope>(
+        &mut self,
+        cso: &Cso<'_, A, B>,
+        proximity: &Proximity,
+        clipper: &mut Clipper,
+    ) -> bool {
+        let count = clipper.corners.count;
+        let frame = ContactFrame::new(proximity.on_1, proximity.normal);
+        self.widen_side(0, &frame, cso.shape_1, clipper);
+        self.widen_side(1, &frame.in_frame_2(cso.pose), cso.shape_2, clipper);
+        clipper.corners.count > count
+    }
+
+    /// The same for one shape. A cap has all its corners.
+    fn widen_side(
+        &mut self,
+        side: usize,
+        frame: &ContactFrame,
+        shape: &impl Polytope,
+        clipper: &mut Clipper,
+    ) {
+        let surface = &mut self.surfaces[side];
+        let face = surface.plane.face;
+        if surface.polygon != face {
+            return;
+        }
+        beside::add_planes(frame, shape, face, surface.sign, surface.more);
+        for vertex in beside::corners(shape, face, self.surfaces[side].more) {
+            let point = shape.vertex(vertex).as_vec3();
+            let [x, y] = self.projections[side].flatten([point; LANES]);
+            if self.distances(x, y).as_array()[0] < 0.0 {
+                clipper.add_beside(side, vertex, [x, y]);
+            }
+        }
     }
 
     /// From the first surface to the second.
@@ -204,6 +246,8 @@ impl<'s> ContactPatch<'s> {
                 let vertex = cso.shape_1.face_vertex(f1, i.into());
                 [Feature::Vertex(vertex), face(1)]
             }
+            VertexOrigin::Beside(0, vertex) => [Feature::Vertex(vertex), face(1)],
+            VertexOrigin::Beside(_, vertex) => [face(0), Feature::Vertex(vertex)],
             VertexOrigin::Crossing(i, j) => [
                 outline_edge(cso.shape_1, f1, i.into()),
                 outline_edge(cso.shape_2, f2, j.into()),

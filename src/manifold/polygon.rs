@@ -154,8 +154,19 @@ impl Row {
     /// Whether a point is inside of these sides of a clockwise polygon.
     #[inline(always)]
     pub fn contains(&self, x: f32x4, y: f32x4) -> bool {
-        let heights = (x - self.x) * self.along_y - (y - self.y) * self.along_x;
-        heights.simd_ge(-self.slack).all()
+        self.heights(x, y).simd_ge(-self.slack).all()
+    }
+
+    /// The same for a counter-clockwise polygon.
+    #[inline(always)]
+    pub fn holds_as_window(&self, x: f32x4, y: f32x4) -> bool {
+        self.heights(x, y).simd_le(self.slack).all()
+    }
+
+    /// The heights of a point over the sides of a clockwise polygon, times their lengths.
+    #[inline(always)]
+    fn heights(&self, x: f32x4, y: f32x4) -> f32x4 {
+        (x - self.x) * self.along_y - (y - self.y) * self.along_x
     }
 }
 

@@ -210,6 +210,53 @@ fn a_noisy_side_is_met_as_a_whole_in_points_on_it() {
     }
 }
 
+/// A stone that is pressed into the ground has four corners beneath it, on two faces with a common edge.
+/// The corners of one face alone had contacts, so it rocked over that edge.
+#[test]
+fn a_pressed_stone_is_met_at_all_corners_beneath_the_ground() {
+    let below = [
+        [-1.0, 0.0, 0.0],
+        [1.0, 0.0, 0.0],
+        [0.0, 0.1, 1.0],
+        [0.0, 0.1, -1.0],
+    ];
+    let points: Vec<Vector> = below
+        .into_iter()
+        .chain([[0.0, 1.0, 0.0]])
+        .map(Vector::from)
+        .collect();
+    let stone = SharedShape::new(HullShape::from_points(&points).expect("a stone"));
+    let slab = SharedShape::cuboid(10.0, 1.0, 10.0);
+    for tilt in [-0.02, -1e-3, 1e-3, 0.02] {
+        let pose = Pose::from_parts(Vector::Y * 0.85, Rotation::from_rotation_x(tilt));
+        for swapped in [false, true] {
+            let mut manifolds = Vec::new();
+            if swapped {
+                update_pair(&mut manifolds, [&stone, &slab], pose.inverse(), 0.02);
+            } else {
+                update_pair(&mut manifolds, [&slab, &stone], pose, 0.02);
+            }
+            for corner in &points[..4] {
+                let at = |point: &&TrackedContact<u32>| {
+                    let on_stone = if swapped {
+                        point.local_p1
+                    } else {
+                        point.local_p2
+                    };
+                    on_stone.distance(*corner) < 1e-5
+                };
+                let found = manifolds[0].points.iter().find(at);
+                let found = found.unwrap_or_else(|| panic!("{tilt}: {corner} is missing"));
+                let depth = 1.0 - (pose * *corner).y;
+                assert!(
+                    (found.dist + depth).abs() < 2e-6,
+                    "{tilt}: {corner}: {depth}"
+                );
+            }
+        }
+    }
+}
+
 /// A coin that begins to lean the other way has other deepest corners. Its weight must not be
 /// borne by fewer contacts for that.
 #[test]
@@ -361,4 +408,35 @@ fn contacts_far_from_the_middle_of_a_large_shape_are_exact() {
             "{point:?}"
         );
     }
+}
+
+/// Stones of few corners that are pressed into each other have contacts on both surfaces, one over the
+/// other along the normal.
+#[test]
+fn contacts_of_pressed_stones_lie_on_both() {
+    let mut rng = Rand32::new(9);
+    let mut with_four = 0;
+    for i in 0..3000 {
+        let mut within = |most: Real| most * (2.0 * rng.rand_float() - 1.0);
+        let mut vector = |most: Real| Vector::new(within(most), within(most), within(most));
+        let [a, b] = [(); 2].map(|()| {
+            let points: Vec<Vector> = (0..8 + i % 13).map(|_| vector(1.0)).collect();
+            SharedShape::new(HullShape::from_points(&points).expect("a stone"))
+        });
+        let pose = Pose::from_parts(vector(1.6), Rotation::from_scaled_axis(vector(3.0)));
+        let mut manifolds = Vec::new();
+        update_pair(&mut manifolds, [&a, &b], pose, 0.02);
+        let Some(manifold) = manifolds.first() else {
+            continue;
+        };
+        for point in &manifold.points {
+            let [off_1, off_2] = [(&a, point.local_p1), (&b, point.local_p2)]
+                .map(|(shape, p)| shape.distance_to_local_point(p, false).abs());
+            assert!(off_1.max(off_2) < 1e-5, "{i}: off by {off_1} and {off_2}");
+            let along = (pose * point.local_p2 - point.local_p1).dot(manifold.local_n1);
+            assert!((along - point.dist).abs() < 1e-5, "{i}: {along}, {point:?}");
+        }
+        with_four += usize::from(manifold.points.len() == 4);
+    }
+    assert!(with_four > 300, "only {with_four}");
 }

@@ -1,0 +1,34 @@
+//! Faces beside the one in contact. Shapes that overlap far enough meet with these faces, too: a
+//! stone pressed into the ground has corners below it that no single face has.
+
+use super::contact_frame::{ContactFrame, FaceHeight};
+use crate::support::{FaceId, Polytope, VertexId};
+use crate::tuning::STEEPEST_BESIDE;
+
+/// Adds the planes of the faces beyond the sides of `face` that look at the other shape.
+pub(super) fn add_planes(
+    frame: &ContactFrame,
+    shape: &impl Polytope,
+    face: FaceId,
+    sign: f32,
+    planes: &mut Vec<FaceHeight>,
+) {
+    // Of the two faces at an edge, the one that looks least along `face` is the other one.
+    let behind = -shape.face_normal(face);
+    let sides = 0..shape.face_len(face);
+    let edges = sides.filter_map(|i| shape.face_edge(face, i));
+    let beside = edges.map(|edge| shape.face_at_edge(edge, behind));
+    let seen = beside.filter_map(|other| frame.plane(shape, other, sign));
+    planes.extend(seen.filter(|plane| plane.slope_squared() < STEEPEST_BESIDE * STEEPEST_BESIDE));
+}
+
+/// The corners of the faces in `planes` that are not corners of `face`, some more than once.
+pub(super) fn corners(
+    shape: &impl Polytope,
+    face: FaceId,
+    planes: &[FaceHeight],
+) -> impl Iterator<Item = VertexId> {
+    let around = move |face| (0..shape.face_len(face)).map(move |i| shape.face_vertex(face, i));
+    let others = planes.iter().flat_map(move |plane| around(plane.face));
+    others.filter(move |&vertex| around(face).all(|corner| corner != vertex))
+}
