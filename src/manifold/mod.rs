@@ -120,6 +120,7 @@ pub fn contacts<A: Polytope, B: Polytope>(
 
 /// Chooses among the corners of the patch, and the witness, which is `least` deep. Corners nearer than
 /// `max_distance` come first. `scale` is the radius of the smaller shape.
+// perf: most pairs need it once, and a call would cost each of them.
 #[inline(always)]
 fn choose(
     patch: &ContactPatch<'_>,

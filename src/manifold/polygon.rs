@@ -158,7 +158,7 @@ impl Row {
     }
 
     /// The same for a counter-clockwise polygon.
-    #[inline(always)]
+    #[inline]
     pub fn holds_as_window(&self, x: f32x4, y: f32x4) -> bool {
         self.heights(x, y).simd_le(self.slack).all()
     }
