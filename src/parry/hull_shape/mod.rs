@@ -30,7 +30,8 @@
 //! - `shape_type` is `Custom`, since downcasts such as `as_convex_polyhedron` find no
 //!   polyhedron but a `HullShape`. Match on `as_typed_shape` instead.
 //! - `CompoundFlags::FIX_INTERNAL_EDGES` smooths inner edges only between parts that parry can
-//!   downcast: `HullShape` parts keep their own normals.
+//!   downcast: `HullShape` parts keep their own normals. [`PreparedShapes`] puts plain hulls in their
+//!   place.
 //! - Rounded borders are for plain hulls: use `SharedShape::round_convex_hull`.
 //!
 //! # Memory

@@ -50,8 +50,8 @@ struct Replacement {
 
 impl PreparedShapes {
     /// The shape with its plain hulls prepared, or the shape itself if none of them can be. Round
-    /// hulls stay as they are, and compounds with [`CompoundFlags::FIX_INTERNAL_EDGES`], of which
-    /// parry could not smooth prepared parts.
+    /// hulls stay as they are. Compounds with [`CompoundFlags::FIX_INTERNAL_EDGES`] get plain hulls in
+    /// the place of `HullShape`s, and parry's default weld tolerance: it smooths only these.
     pub fn prepare(&mut self, shape: &SharedShape) -> SharedShape {
         let address = Arc::as_ptr(&shape.0).addr();
         if let Some(known) = self.known.get(&address) {
@@ -77,18 +77,9 @@ impl PreparedShapes {
         }
         let compound = shape.as_compound()?;
         if compound.flags().contains(CompoundFlags::FIX_INTERNAL_EDGES) {
-            return None;
+            return with_parts(compound, plain);
         }
-        let parts = compound.shapes();
-        let prepared: Vec<_> = parts
-            .iter()
-            .map(|(pose, part)| (*pose, self.prepare(part)))
-            .collect();
-        let is_new = parts
-            .iter()
-            .zip(&prepared)
-            .any(|((_, old), (_, new))| !Arc::ptr_eq(&old.0, &new.0));
-        is_new.then(|| SharedShape::new(Compound::new(prepared)))
+        with_parts(compound, |part| self.prepare(part))
     }
 
     /// A `HullShape` of this polyhedron, or of one that is equal to it.
@@ -112,5 +103,30 @@ impl PreparedShapes {
                 None
             }
         }
+    }
+}
+
+/// A compound whose parts are replaced; `None` if each stays as it is.
+fn with_parts(
+    compound: &Compound,
+    mut replace: impl FnMut(&SharedShape) -> SharedShape,
+) -> Option<SharedShape> {
+    let parts = compound.shapes();
+    let replaced: Vec<_> = parts
+        .iter()
+        .map(|(pose, part)| (*pose, replace(part)))
+        .collect();
+    let is_new = parts
+        .iter()
+        .zip(&replaced)
+        .any(|((_, old), (_, new))| !Arc::ptr_eq(&old.0, &new.0));
+    is_new.then(|| SharedShape::new(Compound::with_flags(replaced, compound.flags(), None)))
+}
+
+/// A plain hull in the place of a `HullShape`; other shapes as they are.
+fn plain(part: &SharedShape) -> SharedShape {
+    match part.as_shape::<HullShape>() {
+        Some(hull) => SharedShape::new(hull.inner.polyhedron.clone()),
+        None => part.clone(),
     }
 }
