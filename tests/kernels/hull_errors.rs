@@ -460,3 +460,28 @@ fn triangulated_prisms_of_many_sides_are_prepared() {
         }
     }
 }
+
+/// Each point of a thin cloud is looked for outside of the hull. Against each face that took 15 times as
+/// long as to build a thick one.
+#[test]
+fn thin_clouds_of_many_inner_points_are_built_as_soon_as_thick_ones() {
+    let mut rng = Rng::new(12);
+    let ball: Vec<DVec3> = (0..60_000)
+        .map(|_| rng.direction() * rng.range(0.0, 1.0))
+        .collect();
+    let mut quickest = [f64::INFINITY; 2];
+    for _ in 0..5 {
+        for (thickness, quickest) in [1.0, 0.02].iter().zip(&mut quickest) {
+            let stretch = DVec3::new(1.0, 1.0, *thickness);
+            let points: Vec<Vec3> = ball.iter().map(|p| (*p * stretch).as_vec3()).collect();
+            let start = Instant::now();
+            Hull::from_points(&points).expect("a solid");
+            *quickest = quickest.min(start.elapsed().as_secs_f64());
+        }
+    }
+    let [thick, thin] = quickest;
+    assert!(
+        thin < 8.0 * thick,
+        "{thin} s, and {thick} s for a thick one"
+    );
+}
