@@ -21,6 +21,7 @@ mod no_pair_lost;
 mod parry_regressions;
 mod round_pairs;
 mod scene_queries;
+mod sizes;
 mod touching;
 mod unusual_callers;
 mod walk;
