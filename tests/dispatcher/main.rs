@@ -22,6 +22,7 @@ mod parry_regressions;
 mod round_pairs;
 mod scene_queries;
 mod sizes;
+mod sunk_plates;
 mod touching;
 mod unusual_callers;
 mod walk;
