@@ -5,7 +5,7 @@ use std::hint::black_box;
 use std::time::Instant;
 
 use isa_gjk::IsaGjkDispatcher;
-use isa_gjk::hull_shape::PreparedShapes;
+use isa_gjk::PreparedShapes;
 use oorandom::Rand32;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{

@@ -50,39 +50,13 @@
 //! ones. Input is f32. Distances, depths and their proofs are computed in f64; scans of small hulls
 //! compare in f32 first and settle near ties in f64, and contacts beside the witness are clipped in f32.
 //!
-//! # Map
+//! # Without a physics engine
 //!
-//! A module uses only those above it.
-//!
-//! | Module | What it is |
-//! |---|---|
-//! | [`tolerance`] | the constants that bear on accuracy, each with its reason |
-//! | `tuning` | the constants that only steer a choice |
-//! | [`stats`] | which stage answered, at what cost |
-//! | [`pose`] | the second shape's pose in frame 1, in f64 |
-//! | [`support`] | extreme points of shapes and of their Minkowski difference |
-//! | [`hull`] | the edge graph, faces and start-vertex table of a convex hull |
-//! | [`primitive`] | boxes, triangles and smooth shapes, as hulls meet them |
-//! | [`simplex`] | the point of a simplex nearest to the origin, in three ways |
-//! | [`gjk`] | distance and separating axis |
-//! | [`ray_cast`] | linear time of impact |
-//! | [`epa`] | penetration depth |
-//! | [`query`] | the stages of a coherent query, and the proof that features still touch |
-//! | [`manifold`] | clipping of faces, and the contacts that are kept |
-//! | [`hull_shape`] | a `Shape` that carries its prepared hull |
-//! | [`dispatcher`] | the plug: from parry's shapes and manifolds to queries and back |
-//! | `bevy` | rapier worlds in Bevy's entities (features `bevy`, `bevy_app`) |
-//!
-//! Everything above `hull_shape` works without a physics engine (poses and the hull builder are
-//! parry's):
+//! [`query`] works without one (poses and the hull builder are parry's):
 //!
 //! ```
-//! use isa_gjk::epa::EpaScratch;
-//! use isa_gjk::pose::RelativePose;
-//! use isa_gjk::query::{Answer, PairMemory, Query};
-//! use isa_gjk::stats::Cost;
-//! use isa_gjk::support::Cso;
 //! use isa_gjk::Hull;
+//! use isa_gjk::query::{Answer, Cost, Cso, EpaScratch, PairMemory, Query, RelativePose};
 //! use glam::Vec3;
 //! use parry3d::math::Pose;
 //!
@@ -105,35 +79,26 @@
 
 #[cfg(feature = "bevy")]
 pub mod bevy;
-/// The plug: from parry's shapes and manifolds to queries and back.
-pub mod dispatcher {
-    pub use crate::parry::dispatcher::IsaGjkDispatcher;
-}
-pub mod epa;
-pub mod gjk;
-mod greatest;
-pub mod hull;
-/// A `Shape` that carries its prepared hull.
-pub mod hull_shape {
-    pub use crate::parry::hull_shape::{HullShape, PreparedShapes};
-}
-pub mod manifold;
+mod epa;
+mod gjk;
+mod hull;
+mod manifold;
 mod map_pair;
 mod parry;
-pub mod pose;
-pub mod primitive;
+mod pose;
+mod primitive;
 pub mod query;
-pub mod ray_cast;
+mod ray_cast;
 mod simd;
-pub mod simplex;
-pub mod stats;
-pub mod support;
-pub mod tolerance;
+mod simplex;
+mod stats;
+mod support;
+mod tolerance;
 mod tuning;
 
-pub use dispatcher::IsaGjkDispatcher;
 pub use hull::{Hull, HullError};
-pub use hull_shape::{HullShape, PreparedShapes};
+pub use parry::dispatcher::IsaGjkDispatcher;
+pub use parry::hull_shape::{HullShape, PreparedShapes};
 pub use stats::{Left, Stage, Stats};
 
 /// All that a user of a physics world needs.
@@ -141,6 +106,44 @@ pub mod prelude {
     pub use crate::{
         Hull, HullError, HullShape, IsaGjkDispatcher, Left, PreparedShapes, Stage, Stats,
     };
+}
+
+/// What tests and benches of the kernels use. It promises nothing, and may change with any version.
+#[doc(hidden)]
+pub mod internals {
+    pub mod epa {
+        pub use crate::epa::*;
+    }
+    pub mod gjk {
+        pub use crate::gjk::*;
+    }
+    pub mod hull {
+        pub use crate::hull::*;
+    }
+    pub mod manifold {
+        pub use crate::manifold::*;
+    }
+    pub mod pose {
+        pub use crate::pose::*;
+    }
+    pub mod primitive {
+        pub use crate::primitive::*;
+    }
+    pub mod ray_cast {
+        pub use crate::ray_cast::*;
+    }
+    pub mod simplex {
+        pub use crate::simplex::*;
+    }
+    pub mod stats {
+        pub use crate::stats::*;
+    }
+    pub mod support {
+        pub use crate::support::*;
+    }
+    pub mod tolerance {
+        pub use crate::tolerance::*;
+    }
 }
 
 #[cfg(doctest)]

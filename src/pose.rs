@@ -13,6 +13,33 @@ pub struct RelativePose {
     translation: DVec3,
 }
 
+/// A finite pose whose quaternion has a direction.
+#[derive(Clone, Copy)]
+pub(crate) struct ValidPose<'a>(&'a Pose);
+
+impl<'a> ValidPose<'a> {
+    #[inline]
+    pub fn new(pos12: &'a Pose) -> Option<Self> {
+        let length = pos12.rotation.length_squared();
+        let is_valid =
+            length.is_finite() && length > f32::MIN_POSITIVE && pos12.translation.is_finite();
+        is_valid.then_some(Self(pos12))
+    }
+}
+
+// Built in place: copying it out of an `Option` would cost a stall of the store buffer in every query.
+impl From<ValidPose<'_>> for RelativePose {
+    #[inline(always)]
+    fn from(ValidPose(pos12): ValidPose<'_>) -> Self {
+        let q = pos12.rotation;
+        let q = DQuat::from_xyzw(q.x.into(), q.y.into(), q.z.into(), q.w.into());
+        Self {
+            rotation: DMat3::from_quat(q * unit_scale(q.length_squared())),
+            translation: pos12.translation.as_dvec3(),
+        }
+    }
+}
+
 /// What makes a unit of something that is about one, by its length squared.
 ///
 /// One Newton step of the reciprocal root; a root and a division would be the longest dependency of a
@@ -28,41 +55,10 @@ pub(crate) fn unit_scale(length_squared: f64) -> f64 {
 }
 
 impl RelativePose {
-    /// From an f32 pose of shape 2 in frame 1; its quaternion is normalised here, in f64.
-    ///
-    /// `None` if the pose is not [valid](Self::is_valid).
+    /// From an f32 pose of shape 2 in frame 1; its quaternion is normalised here, in f64. `None` if the
+    /// pose is not finite, or its quaternion has no direction.
     pub fn new(pos12: &Pose) -> Option<Self> {
-        Self::is_valid(pos12).then(|| Self::from_valid(pos12))
-    }
-
-    /// From a pose that is [valid](Self::is_valid). Built in place: copying it out of an `Option`
-    /// would cost a stall of the store buffer in every query.
-    #[inline(always)]
-    pub(crate) fn from_valid(pos12: &Pose) -> Self {
-        let q = pos12.rotation;
-        let q = DQuat::from_xyzw(q.x.into(), q.y.into(), q.z.into(), q.w.into());
-        Self {
-            rotation: DMat3::from_quat(q * unit_scale(q.length_squared())),
-            translation: pos12.translation.as_dvec3(),
-        }
-    }
-
-    /// That of the other shape in the frame of the kernels' first one, which is the pair's second
-    /// if they are `swapped`. The pose is [valid](Self::is_valid).
-    #[inline(always)]
-    pub(crate) fn of_first(pos12: &Pose, swapped: bool) -> Self {
-        if swapped {
-            Self::from_valid(pos12).inverse()
-        } else {
-            Self::from_valid(pos12)
-        }
-    }
-
-    /// Whether a pose is finite and its quaternion has a direction.
-    #[inline]
-    pub fn is_valid(pos12: &Pose) -> bool {
-        let length = pos12.rotation.length_squared();
-        length.is_finite() && length > f32::MIN_POSITIVE && pos12.translation.is_finite()
+        ValidPose::new(pos12).map(Self::from)
     }
 
     /// The pose of shape 1 in frame 2.

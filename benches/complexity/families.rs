@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec3};
 use isa_gjk::Hull;
-use isa_gjk::stats::Cost;
-use isa_gjk::support::{Support, VertexId};
+use isa_gjk::internals::stats::Cost;
+use isa_gjk::internals::support::{Support, VertexId};
 use oorandom::Rand64;
 use parry3d::math::Pose;
 

@@ -4,10 +4,10 @@
 use std::collections::HashSet;
 
 use glam::DVec3;
-use isa_gjk::simplex::{DistanceSubalgorithm, Voronoi};
-use isa_gjk::stats::Cost;
-use isa_gjk::support::{Cso, CsoVertex, Support};
-use isa_gjk::tolerance::{GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, MIN_DIRECTED_DISTANCE};
+use isa_gjk::internals::simplex::{DistanceSubalgorithm, Voronoi};
+use isa_gjk::internals::stats::Cost;
+use isa_gjk::internals::support::{Cso, CsoVertex, Support};
+use isa_gjk::internals::tolerance::{GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, MIN_DIRECTED_DISTANCE};
 
 /// How the next support direction is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Observation {
     pub unfinished: bool,
 }
 
-/// As `isa_gjk::gjk::distance`, which does not let itself be watched. `WATCH`: keep the books of
+/// As `isa_gjk::internals::gjk::distance`, which does not let itself be watched. `WATCH`: keep the books of
 /// discarded vertices, which costs time.
 pub fn run<const WATCH: bool, A: Support, B: Support>(
     cso: &Cso<'_, A, B>,

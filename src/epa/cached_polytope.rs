@@ -9,8 +9,7 @@
 
 use glam::DVec3;
 
-use super::EpaScratch;
-use super::polytope::{ExpandingPolytope, min_no_nan};
+use super::polytope::{EpaScratch, ExpandingPolytope, min_no_nan};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
 use crate::tolerance::{DEPTH_GAP, PROOF_MARGIN};

@@ -14,6 +14,7 @@ mod polytope;
 mod polytope_cache;
 mod seed;
 
+pub use polytope::EpaScratch;
 pub use polytope_cache::PolytopeCache;
 
 use glam::DVec3;
@@ -23,6 +24,7 @@ use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Support};
 use crate::tolerance::DEPTH_GAP;
 use polytope::ExpandingPolytope;
+
 /// Identical fine spheres need a face for every pair of facets; nothing sane needs more.
 const MAX_EXPANSIONS: u32 = 50_000;
 
@@ -42,12 +44,6 @@ pub struct Penetration {
     pub on_2: DVec3,
     /// The vertices of the face that the witness points come from.
     pub face: [CsoVertex; 3],
-}
-
-/// Memory for expansions, kept from query to query so that none of them allocates.
-#[derive(Clone, Debug, Default)]
-pub struct EpaScratch {
-    polytope: ExpandingPolytope,
 }
 
 /// The penetration depth, growing from the hull of `seeds`: points of the Minkowski difference,

@@ -316,6 +316,12 @@ impl ExpandingPolytope {
     }
 }
 
+/// Memory for expansions, kept from query to query so that none of them allocates.
+#[derive(Clone, Debug, Default)]
+pub struct EpaScratch {
+    pub(super) polytope: ExpandingPolytope,
+}
+
 /// The lesser of two numbers. Neither is NaN, so the check for it in `f64::min` is not needed.
 pub(super) fn min_no_nan(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }

@@ -1,7 +1,7 @@
 //! The cached polytopes of many pairs.
 
-use super::EpaScratch;
 use super::cached_polytope::CachedPolytope;
+use super::polytope::EpaScratch;
 use crate::stats::Cost;
 use crate::support::{Cso, Polytope, Support};
 

@@ -1,12 +1,7 @@
 //! Face clusters: faces that lie nearly in one plane with their neighbours, as those of a scanned or
 //! triangulated flat end do. Bodies rest on clusters, not on single facets of them.
 
-use glam::{DVec2, DVec3};
-
-use super::faces::{FaceCorner, Faces};
-use super::graph::EdgeGraph;
 use crate::support::FaceId;
-use crate::tolerance::CLUSTER_ANGLE_COS;
 
 /// For each face that belongs to a cluster, which faces know of themselves, the cluster; for each cluster, the
 /// faces under its outline in a row.
@@ -18,15 +13,11 @@ pub(super) struct FaceClusters {
     faces: Box<[u16]>,
 }
 
-/// A cluster has no more members than these, so that one contact is never the work of thousands of
-/// faces. What is left of a larger flat region becomes a cluster beside it.
-const MAX_MEMBERS: usize = 64;
-
 /// One cluster.
 pub(super) struct FaceCluster {
     pub members: Vec<u16>,
     /// Faces that are no members, but lie partly under the outline, where that cuts across a bay.
-    covered_nonmembers: Vec<u16>,
+    pub covered_nonmembers: Vec<u16>,
     /// The corners of the convex outline.
     pub outline: Vec<u16>,
 }
@@ -65,133 +56,4 @@ impl FaceClusters {
     pub fn heap_bytes(&self) -> usize {
         size_of_val(&*self.of_face) + size_of_val(&*self.first) + size_of_val(&*self.faces)
     }
-}
-
-/// Grows clusters from the largest faces.
-pub(super) fn grow_clusters(
-    points: &[DVec3],
-    faces: &Faces,
-    graph: &EdgeGraph,
-    largest_first: &[u16],
-) -> Vec<FaceCluster> {
-    let mut taken = vec![false; faces.len()];
-    let mut clusters = Vec::new();
-    for &seed in largest_first {
-        let plane = SeedPlane::of(points, faces, seed.into());
-        if taken[usize::from(seed)] || plane.normal == DVec3::ZERO {
-            continue;
-        }
-        let mut members = vec![seed];
-        taken[usize::from(seed)] = true;
-        let mut next = 0;
-        while let Some(&member) = members.get(next) {
-            for other in adjacent_faces(faces, graph, member) {
-                let fits = members.len() < MAX_MEMBERS && !taken[other as usize];
-                if fits && plane.accepts(points, faces, other) {
-                    taken[other as usize] = true;
-                    members.push(other as u16);
-                }
-            }
-            next += 1;
-        }
-        if members.len() > 1 {
-            let outline = plane.outline(points, faces, &members);
-            clusters.push(FaceCluster {
-                covered_nonmembers: covered_nonmembers(faces, graph, &members, &outline),
-                members,
-                outline,
-            });
-        }
-    }
-    clusters
-}
-
-/// The faces beyond the sides of a face.
-fn adjacent_faces(faces: &Faces, graph: &EdgeGraph, face: u16) -> impl Iterator<Item = FaceId> {
-    let sides = 0..faces.polygon(face.into()).len();
-    sides.filter_map(move |i| {
-        let [left, right] = graph.faces_of_edge(faces.edge(face.into(), i)?)?;
-        Some(if left == face { right } else { left }.into())
-    })
-}
-
-/// The faces that are no members around those vertices of the members that are inside of the
-/// outline.
-fn covered_nonmembers(
-    faces: &Faces,
-    graph: &EdgeGraph,
-    members: &[u16],
-    outline: &[u16],
-) -> Vec<u16> {
-    let corners = members.iter().flat_map(|&face| faces.polygon(face.into()));
-    let inside = corners.map(|c| c.vertex).filter(|v| !outline.contains(v));
-    let around = inside.flat_map(|vertex| graph.faces_around(vertex.into()).flatten());
-    let mut covered_nonmembers: Vec<u16> = around.filter(|face| !members.contains(face)).collect();
-    covered_nonmembers.sort_unstable();
-    covered_nonmembers.dedup();
-    covered_nonmembers
-}
-
-/// The plane of the face that a cluster grows from.
-struct SeedPlane {
-    normal: DVec3,
-    corner: DVec3,
-}
-
-impl SeedPlane {
-    fn of(points: &[DVec3], faces: &Faces, face: FaceId) -> Self {
-        Self {
-            normal: faces.normal(face),
-            corner: points[usize::from(faces.polygon(face)[0].vertex)],
-        }
-    }
-
-    /// Whether a face, and all that is seen of it from the seed, lies within the cluster's angle. A
-    /// sliver without a plane is judged by its corners alone.
-    fn accepts(&self, points: &[DVec3], faces: &Faces, face: FaceId) -> bool {
-        let sine = (1.0 - CLUSTER_ANGLE_COS * CLUSTER_ANGLE_COS).sqrt();
-        let near = |corner: &FaceCorner| {
-            let from_corner = points[usize::from(corner.vertex)] - self.corner;
-            self.normal.dot(from_corner) >= -sine * from_corner.length()
-        };
-        let other = faces.normal(face);
-        let aligned = other == DVec3::ZERO || other.dot(self.normal) >= CLUSTER_ANGLE_COS;
-        aligned && faces.polygon(face).iter().all(near)
-    }
-
-    /// The convex outline of faces seen against the normal, counter-clockwise (Andrew, *Another
-    /// efficient algorithm for convex hulls in two dimensions*, IPL 9(5), 1979).
-    fn outline(&self, points: &[DVec3], faces: &Faces, members: &[u16]) -> Vec<u16> {
-        let u = self.normal.any_orthonormal_vector();
-        let v = self.normal.cross(u);
-        let mut corners: Vec<(DVec2, u16)> = members
-            .iter()
-            .flat_map(|&face| faces.polygon(face.into()))
-            .map(|&FaceCorner { vertex, .. }| {
-                let p = points[usize::from(vertex)] - self.corner;
-                (DVec2::new(p.dot(u), p.dot(v)), vertex)
-            })
-            .collect();
-        corners
-            .sort_by(|(a, i), (b, j)| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(i.cmp(j)));
-        corners.dedup();
-        let mut outline = half_outline(corners.iter());
-        outline.extend(half_outline(corners.iter().rev()));
-        outline
-    }
-}
-
-/// Half of an outline, from the first point to before the last.
-fn half_outline<'a>(corners: impl Iterator<Item = &'a (DVec2, u16)>) -> Vec<u16> {
-    let mut chain: Vec<(DVec2, u16)> = Vec::new();
-    for &corner in corners {
-        while let [.., (a, _), (b, _)] = chain[..]
-            && (b - a).perp_dot(corner.0 - a) <= 0.0
-        {
-            chain.pop();
-        }
-        chain.push(corner);
-    }
-    chain.pop();
-    chain.into_iter().map(|(_, vertex)| vertex).collect()
 }

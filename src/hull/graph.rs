@@ -1,8 +1,7 @@
 //! The edge graph of a triangulated hull: the neighbours of each vertex, and the faces between them.
 
-use std::{array, iter};
+use std::iter;
 
-use super::build::half_edge::{DirectedEdge, HalfEdgeMesh, triangle};
 use crate::support::VertexId;
 
 /// The id of an edge is its lower vertex, above this many bits, and its slot among that vertex's
@@ -14,9 +13,9 @@ const SLOT_BITS: u32 = 15;
 #[repr(C)]
 pub(super) struct EdgeGraph {
     /// The first neighbours of each vertex, which of most vertices are all.
-    blocks: Box<[NeighborBlock]>,
+    pub(super) blocks: Box<[NeighborBlock]>,
     /// Those after them, in no order that matters.
-    overflow: Box<[NeighborBlock]>,
+    pub(super) overflow: Box<[NeighborBlock]>,
 }
 
 /// Neighbours of a vertex, clockwise seen from outside. Unused slots repeat the first
@@ -28,41 +27,25 @@ pub(super) struct EdgeGraph {
 #[repr(align(32))]
 pub(super) struct NeighborBlock {
     /// Ids of vertices; the highest bits of the first two are marks.
-    to: [u16; BLOCK],
+    pub(super) to: [u16; BLOCK],
     /// The face left of the edge to each of them. Right of it is that left of the next one. Where there
     /// are more neighbours, the last one is no face, but where their block is.
-    left: [u16; BLOCK],
+    pub(super) left: [u16; BLOCK],
 }
 
 /// On a triangulated surface each vertex has six neighbours on the average.
-const BLOCK: usize = 8;
+pub(super) const BLOCK: usize = 8;
 
 /// A bit that no id of a vertex has.
-const MARK: u16 = 1 << 15;
+pub(super) const MARK: u16 = 1 << 15;
 /// The neighbour whose mark says that at this vertex a tie must be looked into.
-const PLATEAU_SEARCH: usize = 0;
+pub(super) const PLATEAU_SEARCH: usize = 0;
 /// The neighbour whose mark says that there are more of them in another block.
-const OVERFLOW: usize = 1;
+pub(super) const OVERFLOW: usize = 1;
 /// The last slot of a block, and how many neighbours it has that the next one has not.
 pub(super) const LAST: usize = BLOCK - 1;
 
 impl NeighborBlock {
-    /// From the sides that leave a vertex, of which the `first` is to fill up with.
-    fn new(sides: &[DirectedEdge], first: &DirectedEdge, face_of: &[u16]) -> Self {
-        let sides: [&DirectedEdge; BLOCK] = array::from_fn(|i| sides.get(i).unwrap_or(first));
-        Self {
-            to: sides.map(|side| side.to),
-            left: sides.map(|side| face_of[triangle(side.half_edge)]),
-        }
-    }
-
-    /// With others after it.
-    fn with_overflow(mut self, slot: usize) -> Self {
-        self.to[OVERFLOW] |= MARK;
-        self.left[LAST] = slot as u16;
-        self
-    }
-
     /// The neighbours.
     #[inline(always)]
     pub fn to(&self) -> [u16; BLOCK] {
@@ -96,37 +79,6 @@ impl NeighborBlock {
 }
 
 impl EdgeGraph {
-    /// From a surface whose triangles went to the faces `face_of`.
-    pub fn new(mesh: &HalfEdgeMesh<'_>, face_of: &[u16]) -> Self {
-        let mut overflow = Vec::new();
-        let blocks = (0..mesh.vertex_count()).map(|v| {
-            let around = mesh.outgoing(v as u32);
-            let block = |sides| NeighborBlock::new(sides, &around[0], face_of);
-            // From the last one on, so that each knows where the next is.
-            let last = (around.len() - 2) / LAST;
-            (1..=last)
-                .rev()
-                .fold(block(&around[last * LAST..]), |after, number| {
-                    overflow.push(after);
-                    let sides = &around[(number - 1) * LAST..][..BLOCK];
-                    block(sides).with_overflow(overflow.len() - 1)
-                })
-        });
-        Self {
-            blocks: blocks.collect(),
-            overflow: overflow.into(),
-        }
-    }
-
-    /// Marks the vertices at which a climb must look into ties.
-    pub fn mark_plateau_search(&mut self, needs_plateau_search: impl Fn(&Self, VertexId) -> bool) {
-        for v in 0..self.blocks.len() {
-            if needs_plateau_search(self, v as VertexId) {
-                self.blocks[v].to[PLATEAU_SEARCH] |= MARK;
-            }
-        }
-    }
-
     /// The first block of a vertex.
     #[inline(always)]
     pub fn block(&self, vertex: VertexId) -> &NeighborBlock {

@@ -9,7 +9,6 @@ mod faces;
 mod graph;
 mod scan;
 mod start_table;
-mod top;
 
 pub(crate) use build::point_cloud::hull_of_points;
 pub use error::HullError;

@@ -7,8 +7,8 @@
 use std::array;
 use std::ops::RangeInclusive;
 
+use crate::simd::{f32x4, f32x8};
 use glam::{DVec3, Vec3};
-use wide::{f32x4, f32x8};
 
 use crate::support::VertexId;
 use crate::tolerance::SCAN_ROUNDING;

@@ -10,12 +10,12 @@
 //! all that is computed for four corners. So everything is computed in fours, for all corners that
 //! there can be, and then those that there are are gathered.
 
-use glam::Vec2;
-use wide::f32x4;
+use crate::simd::f32x4;
 
-use super::polygon::{EdgeLanes, LANES, PolygonRows};
+use super::clip_vertices::ClipVertices;
+use super::polygon::{EdgeLanes, PolygonRows};
 use super::sectors;
-use crate::map_pair::map_pair;
+use crate::simd::LANES;
 use crate::support::VertexId;
 
 /// From so many pairs of sides on, only near ones are compared.
@@ -131,7 +131,7 @@ impl Clipper {
             self.subject.count > 2 && self.subject.rows().iter().all(|row| row.contains(x, y))
         } else {
             let rows = self.window.rows();
-            rows.iter().all(|row| row.holds_as_window(x, y))
+            rows.iter().all(|row| row.contains_as_window(x, y))
         };
         if is_inside {
             let source = self.first_beside() + self.beside.len();
@@ -165,91 +165,9 @@ impl Clipper {
     }
 }
 
-/// Corners one after the other.
-#[derive(Clone, Debug, Default)]
-pub(super) struct ClipVertices {
-    x: Vec<f32>,
-    y: Vec<f32>,
-    /// What they come from: crossings are numbered window side by window side, after them come the
-    /// corners of the subject, then those of the window, in whole rows each.
-    sources: Vec<u32>,
-    pub count: usize,
-}
-
-impl ClipVertices {
-    /// Becomes those of a polygon.
-    pub fn set(&mut self, polygon: &PolygonRows) {
-        self.count = 0;
-        for (r, row) in polygon.rows().iter().enumerate() {
-            self.push_masked(polygon.vertex_mask(r), LANES * r, &[row.x], &[row.y]);
-        }
-    }
-
-    /// Adds those of some rows whose bits are set; the first one of the first row has the number
-    /// `source`.
-    #[inline(always)]
-    pub fn push_masked<const ROWS: usize>(
-        &mut self,
-        mut there: u32,
-        source: usize,
-        x: &[f32x4; ROWS],
-        y: &[f32x4; ROWS],
-    ) {
-        if self.sources.len() < self.count + LANES * ROWS {
-            self.grow(self.count + LANES * ROWS);
-        }
-        let (x, y): (&[f32], &[f32]) = (bytemuck::cast_slice(x), bytemuck::cast_slice(y));
-        while there != 0 {
-            let i = there.trailing_zeros() as usize;
-            there &= there - 1;
-            self.x[self.count] = x[i];
-            self.y[self.count] = y[i];
-            self.sources[self.count] = (source + i) as u32;
-            self.count += 1;
-        }
-    }
-
-    /// Adds one corner.
-    #[inline(always)]
-    pub fn push(&mut self, at: Vec2, source: usize) {
-        if self.sources.len() <= self.count {
-            self.grow(self.count + 1);
-        }
-        self.x[self.count] = at.x;
-        self.y[self.count] = at.y;
-        self.sources[self.count] = source as u32;
-        self.count += 1;
-    }
-
-    /// Makes room for so many and more, in fours, as they are read.
-    #[cold]
-    fn grow(&mut self, count: usize) {
-        let room = (2 * count).next_multiple_of(LANES);
-        self.x.resize(room, 0.0);
-        self.y.resize(room, 0.0);
-        self.sources.resize(room, 0);
-    }
-
-    /// Where they are, in fours.
-    #[inline(always)]
-    pub fn fours(&self) -> impl Iterator<Item = [f32x4; 2]> {
-        let rows = self.count.div_ceil(LANES);
-        let [x, y] = map_pair([&self.x, &self.y], |all| {
-            all.as_chunks::<LANES>().0[..rows].iter()
-        });
-        x.zip(y).map(|(&x, &y)| [x.into(), y.into()])
-    }
-
-    /// Where one of them is.
-    #[inline(always)]
-    pub fn at(&self, corner: usize) -> Vec2 {
-        Vec2::new(self.x[corner], self.y[corner])
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use glam::DVec2;
+    use glam::{DVec2, Vec2};
 
     use super::*;
 

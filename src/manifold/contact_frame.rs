@@ -1,11 +1,11 @@
 //! The contact plane: as each shape sees it, and faces over it.
 
+use crate::simd::f32x4;
 use glam::{DVec3, Vec2, Vec3};
-use wide::f32x4;
 
-use super::polygon::LANES;
 use crate::map_pair::map_pair;
 use crate::pose::RelativePose;
+use crate::simd::LANES;
 use crate::support::{FaceId, Polytope};
 use crate::tuning::EDGE_ON;
 

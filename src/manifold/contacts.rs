@@ -1,11 +1,11 @@
 //! Up to four contacts, coordinate by coordinate: so they are made and written four at a time.
 
+use crate::simd::f32x4;
 use glam::{DVec3, Vec3};
-use wide::f32x4;
 
-use super::polygon::LANES;
 use crate::pose::RelativePose;
 use crate::query::{Feature, Proximity};
+use crate::simd::LANES;
 
 /// More points than this add no stiffness to a rigid contact.
 pub const MAX_POINTS: usize = LANES;

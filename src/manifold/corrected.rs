@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::contacts::Contacts;
 use super::patch::ContactPatch;
-use super::{ClipScratch, Selection};
+use super::reduce::Selection;
+use super::scratch::ClipScratch;
 use crate::query::{self, Feature, Proximity};
 use crate::stats::Cost;
 use crate::support::{Cso, FaceId, Polytope, VertexId};

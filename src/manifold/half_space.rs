@@ -1,15 +1,16 @@
 //! Contacts with a half-space: corners of the face that lies on it.
 
+use crate::simd::f64x4;
 use glam::Vec2;
-use wide::f64x4;
 
 use super::clip::Clipper;
 use super::contact_frame::ContactFrame;
 use super::contacts::{Contacts, MAX_POINTS};
-use super::polygon::LANES;
-use super::{ClipScratch, Selection};
+use super::reduce::Selection;
+use super::scratch::ClipScratch;
 use crate::pose::RelativePose;
 use crate::query::{Feature, Proximity, vertex_of};
+use crate::simd::LANES;
 use crate::simd::{DVec3x4, to_f32x4};
 use crate::support::Polytope;
 use crate::tuning::{EDGE_ON, SAME_POINT};

@@ -10,6 +10,7 @@
 
 mod beside;
 mod clip;
+mod clip_vertices;
 mod contact_frame;
 mod contacts;
 mod corrected;
@@ -17,6 +18,7 @@ mod half_space;
 mod patch;
 mod polygon;
 mod reduce;
+mod scratch;
 mod sectors;
 
 use glam::Vec2;
@@ -26,67 +28,13 @@ use crate::support::{Cso, Polytope};
 use crate::tolerance::SAME_DEPTH;
 use crate::tuning::{PRESSED, SAME_POINT};
 use clip::Clipper;
-use contact_frame::FaceHeight;
 use patch::ContactPatch;
-use reduce::Candidates;
+use reduce::{Candidates, Selection};
 
 pub use contacts::{ContactPoint, Contacts, MAX_POINTS};
 pub use corrected::contacts_along;
 pub use half_space::half_space_contacts;
-
-/// Memory for manifolds, kept from one to the next so that none of them allocates.
-#[derive(Clone, Debug, Default)]
-pub struct ClipScratch {
-    planes: [Vec<FaceHeight>; 2],
-    clipper: Clipper,
-    candidates: Candidates,
-}
-
-/// Which corners of the contact patch become contacts; `None` is the witness of the query.
-#[derive(Default)]
-struct Selection {
-    corners: [Option<usize>; MAX_POINTS],
-    len: usize,
-}
-
-impl Selection {
-    #[inline(always)]
-    fn push(&mut self, corner: Option<usize>) {
-        self.corners[self.len] = corner;
-        self.len += 1;
-    }
-
-    /// Their numbers, and others that mean nothing.
-    #[inline(always)]
-    fn numbers(&self) -> [usize; MAX_POINTS] {
-        let [a, b, c, d] = self.corners;
-        [
-            a.unwrap_or(0),
-            b.unwrap_or(0),
-            c.unwrap_or(0),
-            d.unwrap_or(0),
-        ]
-    }
-
-    /// The nearest of those beyond reach, while there is room.
-    #[inline(always)]
-    fn fill_up(&mut self, candidates: &mut Candidates) {
-        while self.len < MAX_POINTS
-            && let Some(corner) = candidates.pop_beyond_range()
-        {
-            self.push(Some(corner));
-        }
-    }
-
-    /// Those that there are. Which these are is not predictable.
-    #[inline(always)]
-    fn push_all(&mut self, corners: [Option<usize>; MAX_POINTS - 1]) {
-        for corner in corners {
-            self.corners[self.len] = corner;
-            self.len += usize::from(corner.is_some());
-        }
-    }
-}
+pub use scratch::ClipScratch;
 
 /// The contacts around the witness of a query along its normal: those nearer than `max_distance`
 /// first, then the nearest of the others, which a solver needs for what moves fast.
@@ -199,7 +147,7 @@ mod tests {
             let shapes = [prism(sides[0], radii[0]), prism(sides[1], radii[1])];
             let turn = Rotation::from_scaled_axis(Vec3::new(1e-3, 0.4, 2e-3));
             let pose = Pose::from_parts(Vec3::new(0.3, 0.99, 0.1), turn);
-            let pose = RelativePose::from_valid(&pose);
+            let pose = RelativePose::new(&pose).expect("a finite pose");
             let cso = Cso {
                 shape_1: &shapes[0],
                 shape_2: &shapes[1],

@@ -1,16 +1,15 @@
 //! The two surfaces in contact, seen along the contact normal.
 
+use crate::simd::f32x4;
 use glam::{DVec3, Vec2};
-use wide::f32x4;
 
-use super::Selection;
 use super::beside;
 use super::clip::{Clipper, VertexOrigin};
 use super::contact_frame::{ContactFrame, FaceHeight, PlaneProjection};
 use super::contacts::{Contacts, MAX_POINTS};
-use super::polygon::{LANES, lane_mask};
-use super::reduce::Candidates;
+use super::reduce::{Candidates, Selection};
 use crate::query::{Feature, Proximity};
+use crate::simd::{LANES, lane_mask};
 use crate::support::{Cso, FaceId, Polytope};
 use crate::tuning::LEVEL_SLOPE;
 
@@ -154,7 +153,7 @@ impl<'s> ContactPatch<'s> {
         clipper.corners.count > count
     }
 
-    /// The same for one shape. A cap has all its corners.
+    /// The same for one shape. A cluster has all its corners.
     fn widen_side(
         &mut self,
         side: usize,

@@ -1,15 +1,9 @@
 //! Polygons in the contact plane, in rows of four corners.
 
+use crate::simd::{ALL, LANES, f32x4, first_lanes, lane_mask};
 use glam::Vec2;
-use wide::f32x4;
 
 use crate::tolerance::CLIP_SLACK;
-
-/// Corners are looked at in fours: most faces have no more.
-pub(super) const LANES: usize = 4;
-
-/// The bits of all lanes.
-pub(super) const ALL: u32 = (1 << LANES) - 1;
 
 /// A polygon; its last row is filled up with its first corner.
 #[derive(Clone, Debug)]
@@ -159,7 +153,7 @@ impl Row {
 
     /// The same for a counter-clockwise polygon.
     #[inline]
-    pub fn holds_as_window(&self, x: f32x4, y: f32x4) -> bool {
+    pub fn contains_as_window(&self, x: f32x4, y: f32x4) -> bool {
         self.heights(x, y).simd_le(self.slack).all()
     }
 
@@ -255,26 +249,4 @@ impl EdgeLanes {
             there: (crosses & on_side).to_bitmask(),
         }
     }
-}
-
-/// The bits of the first lanes: so many, or all.
-#[inline(always)]
-pub(super) fn first_lanes(count: usize) -> u32 {
-    ALL >> LANES.saturating_sub(count)
-}
-
-/// A mask of the lanes whose bits are set.
-#[inline(always)]
-pub(super) fn lane_mask(bits: u32) -> f32x4 {
-    const MASKS: [[u32; LANES]; 1 << LANES] = {
-        let mut masks = [[0; LANES]; 1 << LANES];
-        let mut i = 0;
-        while i < masks.len() * LANES {
-            let (bits, lane) = (i / LANES, i % LANES);
-            masks[bits][lane] = if bits >> lane & 1 == 1 { u32::MAX } else { 0 };
-            i += 1;
-        }
-        masks
-    };
-    bytemuck::cast(MASKS[(bits & ALL) as usize])
 }

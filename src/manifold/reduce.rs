@@ -2,12 +2,12 @@
 
 use std::ops::RangeInclusive;
 
+use crate::simd::f32x4;
 use glam::Vec2;
-use wide::f32x4;
 
-use super::MAX_POINTS;
-use super::clip::ClipVertices;
-use super::polygon::{LANES, first_lanes, lane_mask};
+use super::clip_vertices::ClipVertices;
+use super::contacts::MAX_POINTS;
+use crate::simd::{LANES, first_lanes, lane_mask};
 
 /// Corners to choose from, by their numbers.
 #[derive(Clone, Debug, Default)]
@@ -202,4 +202,50 @@ fn added_area(x: f32x4, y: f32x4, a: Vec2, b: Vec2) -> f32x4 {
     let beyond_ab = (x - a.x) * ab.y - (y - a.y) * ab.x;
     let beyond_bo = y * bo.x - x * bo.y;
     beyond_ab.fast_max(beyond_bo)
+}
+
+/// Which corners of the contact patch become contacts; `None` is the witness of the query.
+#[derive(Default)]
+pub(super) struct Selection {
+    pub corners: [Option<usize>; MAX_POINTS],
+    pub len: usize,
+}
+
+impl Selection {
+    #[inline(always)]
+    pub fn push(&mut self, corner: Option<usize>) {
+        self.corners[self.len] = corner;
+        self.len += 1;
+    }
+
+    /// Their numbers, and others that mean nothing.
+    #[inline(always)]
+    pub fn numbers(&self) -> [usize; MAX_POINTS] {
+        let [a, b, c, d] = self.corners;
+        [
+            a.unwrap_or(0),
+            b.unwrap_or(0),
+            c.unwrap_or(0),
+            d.unwrap_or(0),
+        ]
+    }
+
+    /// The nearest of those beyond reach, while there is room.
+    #[inline(always)]
+    pub fn fill_up(&mut self, candidates: &mut Candidates) {
+        while self.len < MAX_POINTS
+            && let Some(corner) = candidates.pop_beyond_range()
+        {
+            self.push(Some(corner));
+        }
+    }
+
+    /// Those that there are. Which these are is not predictable.
+    #[inline(always)]
+    pub fn push_all(&mut self, corners: [Option<usize>; MAX_POINTS - 1]) {
+        for corner in corners {
+            self.corners[self.len] = corner;
+            self.len += usize::from(corner.is_some());
+        }
+    }
 }

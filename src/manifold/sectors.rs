@@ -7,7 +7,7 @@
 
 use glam::Vec2;
 
-use super::clip::ClipVertices;
+use super::clip_vertices::ClipVertices;
 use super::polygon::{Line, PolygonRows};
 
 /// The sectors of a polygon, and the one that was entered last.

@@ -5,7 +5,7 @@ use parry3d::math::Pose;
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::shape::{CompoundPseudoNormals, TrianglePseudoNormals};
 
-use crate::parry::manifold::record;
+use crate::parry::order::PairOrder;
 use crate::stats::Cost;
 use crate::support::{Cso, Support};
 use crate::tolerance::{GRAZING, UNCORRECTED};
@@ -79,18 +79,18 @@ impl NormalConstraints for Leaning {
 
 /// The normals of a contact, each as its own shape sees it, corrected: first out of cuts, where another
 /// part goes on, then into the cones of outer normals. `None` if there can be no contact along them.
-/// The pair is `swapped` if its shapes are those of `cso` in the other order.
+/// `order` is that of the shapes of `cso`.
 #[inline(never)]
 pub(crate) fn correct<A: Support, B: Support>(
     [c1, c2]: [Constraints<'_>; 2],
     pos12: &Pose,
-    (cso, swapped): (&Cso<'_, A, B>, bool),
+    (cso, order): (&Cso<'_, A, B>, PairOrder),
     max_distance: f64,
     [mut n1, mut n2]: [Vec3; 2],
 ) -> Option<[Vec3; 2]> {
     let rotation = pos12.rotation;
     let least_overlap = |candidates: &mut dyn Iterator<Item = [Vec3; 2]>| {
-        outermost(cso, swapped, candidates).filter(|(_, distance)| *distance <= max_distance)
+        outermost(cso, order, candidates).filter(|(_, distance)| *distance <= max_distance)
     };
     if let Some(outer) = c1.instead_of(n1) {
         let mut pairs = outer.map(|normal| [normal, rotation.inverse() * -normal]);
@@ -109,11 +109,11 @@ pub(crate) fn correct<A: Support, B: Support>(
 /// their distance along these.
 fn outermost<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
-    swapped: bool,
+    order: PairOrder,
     candidates: &mut dyn Iterator<Item = [Vec3; 2]>,
 ) -> Option<([Vec3; 2], f64)> {
     let distances = candidates.map(|normals| {
-        let [normal, _] = record::ordered(normals, swapped);
+        let [normal, _] = order.to_kernel(normals);
         let normal = normal.as_dvec3();
         let extreme = cso.support(normal, cso.start_vertices(normal), &mut Cost::default());
         (normals, -extreme.w.dot(normal))

@@ -9,10 +9,10 @@ use parry3d::shape::Shape;
 
 use crate::parry::composite;
 use crate::parry::constraints::Constraints;
-use crate::parry::hull_cache::Find;
 use crate::parry::hull_cache::epoch::{Epoch, EpochSource};
-use crate::parry::manifold::UpdateManifold;
-use crate::parry::pair::{self, Operand};
+use crate::parry::operand::Operand;
+use crate::parry::update::Updater;
+use crate::parry::workspace;
 use crate::stats::{SharedStats, Stats};
 
 /// A query dispatcher that answers pairs with a convex hull itself and passes every other pair
@@ -27,7 +27,7 @@ use crate::stats::{SharedStats, Stats};
 pub struct IsaGjkDispatcher<F = DefaultQueryDispatcher> {
     pub(crate) fallback: F,
     stats: SharedStats,
-    pub(crate) epochs: EpochSource,
+    epochs: EpochSource,
 }
 
 impl Default for IsaGjkDispatcher {
@@ -60,6 +60,14 @@ impl<F> IsaGjkDispatcher<F> {
             fallback,
             stats: SharedStats::default(),
             epochs: EpochSource::default(),
+        }
+    }
+
+    fn updater(&self, epoch: Option<Epoch>) -> Updater<'_, F> {
+        Updater {
+            fallback: &self.fallback,
+            stats: &self.stats,
+            epoch,
         }
     }
 
@@ -113,7 +121,7 @@ impl<F> IsaGjkDispatcher<F> {
     /// }
     /// ```
     pub fn trim(&self) {
-        pair::trim();
+        workspace::trim();
     }
 }
 
@@ -132,23 +140,19 @@ where
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
+        let updater = self.updater(self.epochs.epoch());
         let (shapes, operands) = ([g1, g2], (Operand::alone(g1), Operand::alone(g2)));
         let may_be_composite = operands.0.may_be_composite() || operands.1.may_be_composite();
         if may_be_composite
-            && composite::contact_manifolds(self, pos12, shapes, prediction, manifolds, workspace)
+            && composite::contact_manifolds(
+                self, updater, pos12, shapes, prediction, manifolds, workspace,
+            )
         {
             return Ok(());
         }
         composite::reset_to_single(manifolds, workspace);
-        let (constraints, epoch) = ([Constraints::None; 2], self.epochs.epoch());
-        self.update_manifold(
-            pos12,
-            operands,
-            epoch,
-            constraints,
-            prediction,
-            &mut manifolds[0],
-        )
+        let constraints = [Constraints::None; 2];
+        updater.update(pos12, operands, constraints, prediction, &mut manifolds[0])
     }
 
     fn contact_manifold_convex_convex(
@@ -164,50 +168,7 @@ where
         let operands = (Operand::alone(g1), Operand::alone(g2));
         let constraints = [normal_constraints1, normal_constraints2].map(Constraints::given);
         // Whoever takes shapes apart may make parts that do not outlive their pair.
-        let epoch = None;
-        self.update_manifold(pos12, operands, epoch, constraints, prediction, manifold)
-    }
-}
-
-impl<F> IsaGjkDispatcher<F> {
-    /// Brings the manifold of two convex shapes up to date, which are unchanged during `epoch`.
-    // perf: in a call the operands would go through memory, which pairs that are apart notice.
-    #[inline(always)]
-    pub(crate) fn update_manifold<'a, 'b, M, C>(
-        &self,
-        pos12: &Pose,
-        (operand_1, operand_2): (Operand<'a, impl Find<'a>>, Operand<'b, impl Find<'b>>),
-        epoch: Option<Epoch>,
-        constraints: [Constraints<'_>; 2],
-        prediction: Real,
-        manifold: &mut ContactManifold<M, C>,
-    ) -> Result<(), Unsupported>
-    where
-        M: Default + Clone + Send + Sync,
-        C: Default + Copy + Send + Sync,
-        F: PersistentQueryDispatcher<M, C>,
-    {
-        let (g1, g2) = (operand_1.shape, operand_2.shape);
-        let has_hull = operand_1.is_hull() || operand_2.is_hull();
-        let update = UpdateManifold {
-            pos12,
-            prediction,
-            constraints,
-            manifold,
-            stats: &self.stats,
-        };
-        if pair::visit_operands(operand_1, operand_2, epoch, update).is_some() {
-            return Ok(());
-        }
-        if has_hull {
-            self.stats.record_left(pair::why_left(pos12, [g1, g2]));
-        }
-        let [c1, c2] = constraints;
-        c1.with(|c1| {
-            c2.with(|c2| {
-                self.fallback
-                    .contact_manifold_convex_convex(pos12, g1, g2, c1, c2, prediction, manifold)
-            })
-        })
+        let updater = self.updater(None);
+        updater.update(pos12, operands, constraints, prediction, manifold)
     }
 }

@@ -1,109 +1,20 @@
 //! From parry's shapes to polytopes that the kernels can work on.
 
-use std::cell::Cell;
-use std::sync::atomic::{AtomicU64, Ordering};
-
 use parry3d::math::{Pose, Real};
-use parry3d::shape::{
-    ConvexPolyhedron, PolygonalFeatureMap, RoundConvexPolyhedron, Shape, ShapeType, TypedShape,
-};
+use parry3d::shape::{PolygonalFeatureMap, Shape, ShapeType, TypedShape};
 
-use crate::epa::{EpaScratch, PolytopeCache};
 use crate::hull::Hull;
-use crate::manifold::ClipScratch;
 use crate::parry::convert::{self, CurvedShape, HalfSpace};
+use crate::parry::hull_cache::Find;
 use crate::parry::hull_cache::epoch::Epoch;
-use crate::parry::hull_cache::registry::PreparedHull;
-use crate::parry::hull_cache::{EachProved, Find, HullCache, HullRef};
-use crate::parry::hull_shape::HullShape;
-use crate::pose::RelativePose;
+use crate::parry::operand::Operand;
+use crate::parry::order::PairOrder;
+use crate::parry::workspace::{ThreadWorkspace, Workspace};
+use crate::pose::{RelativePose, ValidPose};
 use crate::primitive::Ball;
 use crate::stats::Left;
 use crate::support::{Cso, Polytope, Support};
 use crate::tolerance::MIN_DIRECTED_DISTANCE;
-
-/// What a thread keeps from query to query: prepared hulls, and memory to work in.
-#[derive(Default)]
-struct ThreadWorkspace {
-    hulls: HullCache,
-    workspace: Workspace,
-    /// How often all had been asked to trim when it was made.
-    trims: u64,
-}
-
-/// How often all threads were asked to trim.
-static TRIMS: AtomicU64 = AtomicU64::new(0);
-
-thread_local! {
-    static WORKSPACE: Cell<Option<Box<ThreadWorkspace>>> = const { Cell::new(None) };
-}
-
-/// Drops what threads keep: this one now, others before their next query.
-pub(crate) fn trim() {
-    TRIMS.fetch_add(1, Ordering::Relaxed);
-    ThreadWorkspace::with(|_| ());
-    PreparedHull::forget_unused();
-}
-
-impl ThreadWorkspace {
-    /// Works on that of this thread, which is out of its place meanwhile: whoever asks within a query (a
-    /// user's `NormalConstraints`), or while the thread ends, works on a new one.
-    // perf: in a call the work would go through memory, which pairs that are apart notice.
-    #[inline(always)]
-    fn with<T>(work: impl FnOnce(&mut Self) -> T) -> T {
-        let trims = TRIMS.load(Ordering::Relaxed);
-        let kept = WORKSPACE.try_with(Cell::take).ok().flatten();
-        let mut thread = match kept {
-            Some(thread) if thread.trims == trims => thread,
-            _ => Self::new(trims),
-        };
-        let answer = work(&mut thread);
-        let _ = WORKSPACE.try_with(|location| location.set(Some(thread)));
-        answer
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn new(trims: u64) -> Box<Self> {
-        Box::new(Self {
-            trims,
-            ..Self::default()
-        })
-    }
-}
-
-/// Memory to work in.
-#[derive(Default)]
-pub(crate) struct Workspace {
-    pub epa: EpaScratch,
-    pub clip: ClipScratch,
-    pub polytope_cache: PolytopeCache,
-}
-
-/// A hull with a rounded border of this radius around it.
-#[derive(Clone, Copy)]
-struct HullHandle<'a> {
-    location: HullLocation<'a>,
-    border_radius: f64,
-}
-
-#[derive(Clone, Copy)]
-enum HullLocation<'a> {
-    /// The shape brings it along.
-    Own(&'a Hull),
-    /// It was prepared for the shape.
-    Found(HullRef),
-}
-
-impl<'a> HullHandle<'a> {
-    #[inline]
-    fn hull(&self, cache: &'a HullCache) -> Option<&'a Hull> {
-        match self.location {
-            HullLocation::Own(hull) => Some(hull),
-            HullLocation::Found(location) => cache.get(location),
-        }
-    }
-}
 
 /// A hull and another shape, as the kernels see a pair: in the frame of the hull.
 pub(crate) struct Pair<'a, B> {
@@ -112,14 +23,14 @@ pub(crate) struct Pair<'a, B> {
     /// The radii of the rounded borders around them.
     pub border_radii: [f64; 2],
     /// The hull is the second of the shapes that were asked about.
-    pub swapped: bool,
+    pub order: PairOrder,
 }
 
 impl<'a, B> Pair<'a, B> {
-    /// Of the other shape. That of the shapes asked about is valid.
+    /// Of the other shape, from that of the shapes asked about.
     #[inline(always)]
-    pub fn pose(&self, pos12: &Pose) -> RelativePose {
-        RelativePose::of_first(pos12, self.swapped)
+    pub fn pose(&self, pos12: ValidPose<'_>) -> RelativePose {
+        self.order.pose(pos12)
     }
 
     /// Without borders.
@@ -190,117 +101,6 @@ pub(crate) trait PairVisitor: Sized {
     }
 }
 
-/// A hull among parry's shapes.
-#[derive(Clone, Copy)]
-enum HullSource<'a> {
-    /// With a rounded border of this radius.
-    Plain(&'a ConvexPolyhedron, Real),
-    Prepared(&'a HullShape),
-}
-
-impl<'a> HullSource<'a> {
-    /// By the type that it is: what a user's shape shows as its typed shape may be a likeness only.
-    #[inline]
-    fn of(shape: &'a dyn Shape) -> Option<Self> {
-        if let Some(hull) = shape.as_shape() {
-            return Some(Self::Plain(hull, 0.0));
-        }
-        match shape.shape_type() {
-            ShapeType::Custom => shape.as_shape().map(Self::Prepared),
-            ShapeType::RoundConvexPolyhedron => {
-                let round: &RoundConvexPolyhedron = shape.as_shape()?;
-                Some(Self::Plain(&round.inner_shape, round.border_radius))
-            }
-            _ => None,
-        }
-    }
-}
-
-/// Whether a shape is a hull to us, so that pairs with it are ours to answer.
-pub(crate) fn is_hull(shape: &dyn Shape) -> bool {
-    HullSource::of(shape).is_some()
-}
-
-/// A shape of a pair, and how to find its hull.
-pub(crate) struct Operand<'a, F> {
-    pub shape: &'a dyn Shape,
-    hull: Option<HullSource<'a>>,
-    pub find: F,
-}
-
-impl<'a> Operand<'a, EachProved> {
-    /// A shape of which nothing is known.
-    #[inline]
-    pub fn alone(shape: &'a dyn Shape) -> Self {
-        Self::new(shape, EachProved)
-    }
-}
-
-impl<F> Operand<'_, F> {
-    /// Whether both are one hull. A rounded one may have the address of the one within it.
-    #[inline(always)]
-    fn is_same<G>(&self, other: &Operand<'_, G>) -> bool {
-        std::ptr::addr_eq(self.shape, other.shape) && self.border_radius() == other.border_radius()
-    }
-
-    #[inline]
-    fn border_radius(&self) -> Real {
-        match self.hull {
-            Some(HullSource::Plain(_, border_radius)) => border_radius,
-            _ => 0.0,
-        }
-    }
-}
-
-impl<'a, F: Find<'a>> Operand<'a, F> {
-    #[inline]
-    pub fn new(shape: &'a dyn Shape, find: F) -> Self {
-        let hull = HullSource::of(shape);
-        Self { shape, hull, find }
-    }
-
-    #[inline]
-    pub fn is_hull(&self) -> bool {
-        self.hull.is_some()
-    }
-
-    /// Whether it may consist of parts. Of most shapes it is known at once that they do not.
-    #[inline]
-    pub fn may_be_composite(&self) -> bool {
-        use ShapeType::{Compound, Custom, HeightField, Polyline, TriMesh, Voxels};
-        !self.is_hull()
-            && matches!(
-                self.shape.shape_type(),
-                Compound | Custom | HeightField | Polyline | TriMesh | Voxels
-            )
-    }
-
-    /// The same once more.
-    #[inline]
-    pub fn again(&mut self) -> Operand<'a, &mut F> {
-        Operand {
-            shape: self.shape,
-            hull: self.hull,
-            find: &mut self.find,
-        }
-    }
-
-    /// The hull, if the shape is one.
-    #[inline(always)]
-    fn prepare(&mut self, cache: &mut HullCache) -> Option<HullHandle<'a>> {
-        Some(match self.hull? {
-            HullSource::Plain(polyhedron, border_radius) => HullHandle {
-                location: HullLocation::Found(self.find.find(cache, polyhedron)?),
-                border_radius: border_radius.into(),
-            },
-            HullSource::Prepared(shape) => HullHandle {
-                location: HullLocation::Own(shape.hull()),
-                border_radius: 0.0,
-            },
-        })
-    }
-}
-
 /// Visits the pair if one of its shapes is a hull and the other one known; else `None`.
 #[inline]
 pub(crate) fn visit<V: PairVisitor>(
@@ -343,18 +143,16 @@ pub(crate) fn visit_operands<'a, 'b, V: PairVisitor>(
                         hull: first.hull(hulls)?,
                         other: second.hull(hulls)?,
                         border_radii: [first.border_radius, second.border_radius],
-                        swapped: false,
+                        order: PairOrder::Given,
                     };
                     visitor.visit(&pair, workspace)
                 },
             )
         }
-        [true, false] => {
-            HullOperand::new(&mut operand_1, epoch, false).visit(operand_2.shape, &mut visitor)
-        }
-        [false, true] => {
-            HullOperand::new(&mut operand_2, epoch, true).visit(operand_1.shape, &mut visitor)
-        }
+        [true, false] => HullOperand::new(&mut operand_1, epoch, PairOrder::Given)
+            .visit(operand_2.shape, &mut visitor),
+        [false, true] => HullOperand::new(&mut operand_2, epoch, PairOrder::Reversed)
+            .visit(operand_1.shape, &mut visitor),
         [false, false] => None,
     }
 }
@@ -362,7 +160,7 @@ pub(crate) fn visit_operands<'a, 'b, V: PairVisitor>(
 /// Why a pair with a hull is not ours.
 #[cold]
 pub(crate) fn why_left(pos12: &Pose, shapes: [&dyn Shape; 2]) -> Left {
-    if !RelativePose::is_valid(pos12) {
+    if ValidPose::new(pos12).is_none() {
         return Left::NotFinite;
     }
     let is_prepared = |shape| {
@@ -381,16 +179,16 @@ pub(crate) fn why_left(pos12: &Pose, shapes: [&dyn Shape; 2]) -> Left {
 struct HullOperand<'s, 'a, F> {
     operand: &'s mut Operand<'a, F>,
     epoch: Option<Epoch>,
-    swapped: bool,
+    order: PairOrder,
 }
 
 impl<'s, 'a, F: Find<'a>> HullOperand<'s, 'a, F> {
     #[inline]
-    fn new(operand: &'s mut Operand<'a, F>, epoch: Option<Epoch>, swapped: bool) -> Self {
+    fn new(operand: &'s mut Operand<'a, F>, epoch: Option<Epoch>, order: PairOrder) -> Self {
         Self {
             operand,
             epoch,
-            swapped,
+            order,
         }
     }
 
@@ -490,7 +288,7 @@ impl<'s, 'a, F: Find<'a>> HullOperand<'s, 'a, F> {
                     hull: prepared.hull(hulls)?,
                     other,
                     border_radii: [prepared.border_radius, border_radius.into()],
-                    swapped: self.swapped,
+                    order: self.order,
                 };
                 visit(&pair, workspace)
             },

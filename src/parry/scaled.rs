@@ -8,7 +8,6 @@ use parry3d::query::details::contact_support_map_support_map;
 use parry3d::query::{Contact, ContactManifold};
 use parry3d::shape::{PolygonalFeature, PolygonalFeatureMap, SupportMap};
 
-use crate::parry::manifold::record::ordered;
 use crate::parry::pair::Pair;
 use crate::support::Support;
 use crate::tolerance::LARGEST_SCALED;
@@ -68,11 +67,11 @@ pub(crate) fn contact<B: Support>(
 ) -> Option<Contact> {
     let scale = Scale::of(pair);
     let shapes = [scale.shape(pair.hull), scale.shape(other)];
-    let [shape_1, shape_2] = ordered(shapes, pair.swapped);
+    let [shape_1, shape_2] = pair.order.to_caller(shapes);
     let mut contact =
         contact_support_map_support_map(&scale.pose(pos12), &shape_1, &shape_2, Real::MAX)?;
     let border_radii = pair.border_radii.map(|border_radius| border_radius as Real);
-    let [border_radius_1, border_radius_2] = ordered(border_radii, pair.swapped);
+    let [border_radius_1, border_radius_2] = pair.order.to_caller(border_radii);
     contact.point1 = contact.point1 / scale.0 + contact.normal1 * border_radius_1;
     contact.point2 = contact.point2 / scale.0 + contact.normal2 * border_radius_2;
     contact.dist = contact.dist / scale.0 - (border_radius_1 + border_radius_2);

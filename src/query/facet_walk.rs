@@ -6,7 +6,8 @@ use glam::DVec3;
 
 use super::certificate::verdict::{FacetEdge, Verdict};
 use super::certificate::{facet, vertex_edge};
-use super::{Answer, Feature, Query, WARM, gauss_map};
+use super::types::{Answer, Feature};
+use super::{Query, Start, gauss_map};
 use crate::map_pair::map_pair;
 use crate::stats::Stage;
 use crate::support::{Polytope, VertexId};
@@ -28,7 +29,7 @@ struct FacetWalk {
     /// That of an answer by this facet.
     stage: Stage,
     /// Those of answers by GJK and EPA.
-    gjk: [Stage; 2],
+    from: Start,
 }
 
 /// The facet to look at next, if there is one, and the ends of where it was looked for.
@@ -52,7 +53,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         features: [Feature; 2],
         verdict: &Verdict,
     ) -> Found {
-        let mut walk = self.start_walk(normal, features, Stage::Feature, WARM);
+        let mut walk = self.start_walk(normal, features, Stage::Feature, Start::Warm);
         match self.step(verdict, &mut walk) {
             ControlFlow::Break(found) => found,
             ControlFlow::Continue(()) => self.run_walk(walk),
@@ -64,9 +65,9 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         &mut self,
         normal: DVec3,
         features: [Feature; 2],
-        gjk: [Stage; 2],
+        from: Start,
     ) -> Found {
-        self.run_walk(self.start_walk(normal, features, Stage::FacetWalk, gjk))
+        self.run_walk(self.start_walk(normal, features, Stage::FacetWalk, from))
     }
 
     fn start_walk(
@@ -74,7 +75,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         normal: DVec3,
         features: [Feature; 2],
         stage: Stage,
-        gjk: [Stage; 2],
+        from: Start,
     ) -> FacetWalk {
         FacetWalk {
             features,
@@ -82,7 +83,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             crossed: None,
             steps_left: if self.skips_facet_walk() { 0 } else { MAX_WALK },
             stage,
-            gjk,
+            from,
         }
     }
 
@@ -106,7 +107,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                 return ControlFlow::Break(Some((Answer::Near(*proximity), walk.stage)));
             }
             Verdict::Undecided(candidate) => {
-                return ControlFlow::Break(self.find_depth(candidate, walk.stage, walk.gjk));
+                return ControlFlow::Break(self.find_depth(candidate, walk.stage, walk.from));
             }
             Verdict::OutsideEdge(side) => self.cross_edge(side, walk),
             Verdict::NotSupporting(vertex, normal) => (
@@ -128,7 +129,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             _ => {
                 let ends = map_pair(ends, |ids| self.cso.vertex(ids));
                 let distinct = if ends[0].ids == ends[1].ids { 1 } else { 2 };
-                return ControlFlow::Break(self.run_gjk(&ends[..distinct], walk.gjk));
+                return ControlFlow::Break(self.run_gjk(&ends[..distinct], walk.from));
             }
         }
         walk.steps_left -= 1;

@@ -6,15 +6,15 @@
 //! two edges do. (On the sphere of normals: an arc of the one shape followed until it leaves the
 //! vertex's region of the other.)
 
+use crate::simd::{f64x4, u64x4};
 use glam::DVec3;
-use wide::{f64x4, u64x4};
 
-use super::Feature;
 use super::certificate::verdict::FacetEdge;
-use crate::greatest::{ArgMax, ArgMax4};
+use super::types::Feature;
 use crate::map_pair::map_pair;
 use crate::pose::RelativePose;
 use crate::simd::DVec3x4;
+use crate::simd::{ArgMax, ArgMax4};
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 
 /// The features of the facet across `side`. They are a proposal, to be certified. `None` where
@@ -152,8 +152,8 @@ impl EdgeVertexPair {
 pub(super) mod tests {
     use super::*;
     use crate::hull::Hull;
-    use crate::query::Verdict;
     use crate::query::certificate::facet;
+    use crate::query::certificate::verdict::Verdict;
     use crate::stats::Cost;
     use glam::Vec3;
     use parry3d::math::Pose;
@@ -172,7 +172,7 @@ pub(super) mod tests {
     pub fn random_pose(far: f64, rng: &mut oorandom::Rand64) -> RelativePose {
         let turn = direction(rng) * 6.0 * rng.rand_float();
         let away = direction(rng) * far * rng.rand_float();
-        RelativePose::from_valid(&Pose::new(away.as_vec3(), turn.as_vec3()))
+        RelativePose::new(&Pose::new(away.as_vec3(), turn.as_vec3())).expect("a finite pose")
     }
 
     /// Of all vertices of the difference, how far the outermost is beyond the plane of `features`.

@@ -17,69 +17,52 @@ mod certificate;
 mod facet_walk;
 mod gauss_map;
 mod seeds;
+mod types;
 mod witness;
 
 pub(crate) use certificate::facet::vertex_of;
-pub use certificate::facet::{Feature, vertices};
+pub use certificate::facet::vertices;
 pub(crate) use certificate::verdict::Verdict;
+pub use types::{Answer, Feature, PairMemory, Proximity};
+
+pub use crate::epa::EpaScratch;
+pub use crate::gjk::SeparatingAxis;
+pub use crate::pose::RelativePose;
+pub use crate::ray_cast::{Impact, RayCast, ray_cast};
+pub use crate::stats::Cost;
+pub use crate::support::{Cso, FaceId, Polytope, Support, VertexId};
 
 use glam::DVec3;
 
-use crate::epa::{self, DepthSearch, EpaScratch, Penetration, PolytopeCache};
-use crate::gjk::{self, Closest, Outcome, SeparatingAxis, Simplex};
+use crate::epa::{self, DepthSearch, Penetration, PolytopeCache};
+use crate::gjk::{self, Closest, Outcome, Simplex};
 use crate::simplex::Preferred;
-use crate::stats::{Cost, Stage};
-use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
+use crate::stats::Stage;
+use crate::support::CsoVertex;
 use crate::tolerance::DEPTH_GAP;
 use crate::tuning::{FACET_WALK_RANGE, TILT};
 use certificate::{facet, neighbors};
 use seeds::EpaSeeds;
 
-/// What GJK and EPA count as in a query that goes on from a previous frame, and without one.
-pub(crate) const WARM: [Stage; 2] = [Stage::WarmGjk, Stage::WarmEpa];
-const COLD: [Stage; 2] = [Stage::ColdGjk, Stage::ColdEpa];
-
-/// What is remembered of a pair from one frame to the next.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum PairMemory {
-    /// Nothing: the pair is new.
-    None,
-    /// The shapes were apart along this unit axis (frame 1), at these vertices.
-    Axis(DVec3, [VertexId; 2]),
-    /// The shapes were in contact along this unit normal (frame 1), at these features.
-    Contact(DVec3, [Feature; 2]),
+/// Whether a query goes on from a previous frame: what GJK and EPA count as.
+#[derive(Clone, Copy)]
+pub(crate) enum Start {
+    Warm,
+    Cold,
 }
 
-/// Signed distance, normal and witness points of a pair. All in frame 1.
-#[derive(Clone, Copy, Debug)]
-pub struct Proximity {
-    /// Distance of disjoint shapes; minus the penetration depth of overlapping ones.
-    pub signed_distance: f64,
-    /// Unit direction from shape 1 to shape 2 along which they are that far apart.
-    pub normal: DVec3,
-    /// The witness point on shape 1.
-    pub on_1: DVec3,
-    /// The witness point on shape 2.
-    pub on_2: DVec3,
-    /// The features that the witness points lie on.
-    pub features: [Feature; 2],
-}
-
-/// The answer to a query.
-#[derive(Clone, Copy, Debug)]
-pub enum Answer {
-    /// Farther apart than the query asked about.
-    Separated(SeparatingAxis),
-    /// This near, or overlapping.
-    Near(Proximity),
-}
-
-impl Answer {
-    /// What the next frame's query is to be given.
-    pub fn memory(&self) -> PairMemory {
+impl Start {
+    fn gjk(self) -> Stage {
         match self {
-            Self::Separated(apart) => PairMemory::Axis(apart.axis, apart.ids),
-            Self::Near(near) => PairMemory::Contact(near.normal, near.features),
+            Self::Warm => Stage::WarmGjk,
+            Self::Cold => Stage::ColdGjk,
+        }
+    }
+
+    fn epa(self) -> Stage {
+        match self {
+            Self::Warm => Stage::WarmEpa,
+            Self::Cold => Stage::ColdEpa,
         }
     }
 }
@@ -175,7 +158,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     fn run_near(&mut self, memory: &PairMemory) -> Option<(Answer, Stage)> {
         match *memory {
             PairMemory::None => self.start_from_centers(),
-            PairMemory::Axis(axis, ids) => self.start_from_axis(axis, ids, WARM),
+            PairMemory::Axis(axis, ids) => self.start_from_axis(axis, ids, Start::Warm),
             PairMemory::Contact(normal, features) => {
                 let verdict = self.certify(features);
                 self.start_from_features(normal, features, &verdict)
@@ -186,18 +169,18 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     /// Without memory: along the line of centres.
     pub(crate) fn start_from_centers(&mut self) -> Option<(Answer, Stage)> {
         let axis = self.cso.towards_origin();
-        self.start_from_axis(axis, self.cso.start_vertices(axis), COLD)
+        self.start_from_axis(axis, self.cso.start_vertices(axis), Start::Cold)
     }
 
     fn start_from_axis(
         &mut self,
         axis: DVec3,
         start: [VertexId; 2],
-        gjk: [Stage; 2],
+        from: Start,
     ) -> Option<(Answer, Stage)> {
         match self.test_axis(axis, start) {
             Ok(apart) => Some((Answer::Separated(apart), Stage::Axis)),
-            Err(vertex) => self.start_from_tilted_axis(axis, vertex, gjk),
+            Err(vertex) => self.start_from_tilted_axis(axis, vertex, from),
         }
     }
 
@@ -207,17 +190,17 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         &mut self,
         axis: DVec3,
         vertex: CsoVertex,
-        gjk: [Stage; 2],
+        from: Start,
     ) -> Option<(Answer, Stage)> {
         if self.skips_facet_walk() {
-            return self.run_gjk(&[vertex], gjk);
+            return self.run_gjk(&[vertex], from);
         }
         let tilted = tilted(axis, &vertex);
         match self.test_axis(tilted, vertex.ids) {
             Ok(apart) => Some((Answer::Separated(apart), Stage::Axis)),
             Err(second) => match gauss_map::facet_at_vertex(self.cso, &second, tilted) {
-                Some(features) => self.walk_from(tilted, features, gjk),
-                None => self.run_gjk(&[vertex, second], gjk),
+                Some(features) => self.walk_from(tilted, features, from),
+                None => self.run_gjk(&[vertex, second], from),
             },
         }
     }
@@ -232,15 +215,15 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     }
 
     /// GJK from vertices of the Minkowski difference, and EPA if the shapes overlap, or may.
-    fn run_gjk(&mut self, start: &[CsoVertex], stages: [Stage; 2]) -> Option<(Answer, Stage)> {
+    fn run_gjk(&mut self, start: &[CsoVertex], from: Start) -> Option<(Answer, Stage)> {
         match gjk::distance::<Preferred, _, _>(self.cso, start, self.max_distance, self.cost) {
-            Outcome::Separated(apart) => Some((Answer::Separated(apart), stages[0])),
-            Outcome::Disjoint(closest) => Some((self.near(&closest), stages[0])),
+            Outcome::Separated(apart) => Some((Answer::Separated(apart), from.gjk())),
+            Outcome::Disjoint(closest) => Some((self.near(&closest), from.gjk())),
             Outcome::Unsure(closest) => {
                 self.cost.fallbacks += 1;
-                self.run_epa(&closest.simplex, stages[1])
+                self.run_epa(&closest.simplex, from.epa())
             }
-            Outcome::Overlapping(simplex) => self.run_epa(&simplex, stages[1]),
+            Outcome::Overlapping(simplex) => self.run_epa(&simplex, from.epa()),
         }
     }
 
@@ -273,7 +256,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         &mut self,
         candidate: &Proximity,
         stage: Stage,
-        gjk: [Stage; 2],
+        from: Start,
     ) -> Option<(Answer, Stage)> {
         let known = -candidate.signed_distance;
         if let Some((cache, key)) = &mut self.polytope_cache
@@ -290,15 +273,15 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         self.store_polytope();
         let depth = match depth {
             DepthSearch::Found(depth) => depth,
-            DepthSearch::NotBelow => return Some((Answer::Near(*candidate), gjk[1])),
+            DepthSearch::NotBelow => return Some((Answer::Near(*candidate), from.epa())),
         };
         if let Some(apart) = self.apart(&depth) {
-            return Some((Answer::Separated(apart), gjk[1]));
+            return Some((Answer::Separated(apart), from.epa()));
         }
         if depth.depth < 0.0 {
-            return self.run_gjk(&depth.face, gjk);
+            return self.run_gjk(&depth.face, from);
         }
-        Some((self.overlapping(&depth), gjk[1]))
+        Some((self.overlapping(&depth), from.epa()))
     }
 
     /// Keeps the polytope that EPA expanded for the frames to come.

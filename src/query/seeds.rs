@@ -2,7 +2,7 @@
 
 use std::array;
 
-use crate::query::Feature;
+use crate::query::types::Feature;
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 
 /// Of a face with more corners some are enough.

@@ -6,8 +6,8 @@
 
 use glam::DVec3;
 
-use super::Proximity;
 use super::certificate::facet;
+use super::types::Proximity;
 use crate::epa::Penetration;
 use crate::gjk::{self, Outcome};
 use crate::simplex::Preferred;

@@ -3,7 +3,7 @@
 
 use glam::{DMat3, DVec3};
 use isa_gjk::HullShape;
-use isa_gjk::support::Polytope;
+use isa_gjk::internals::support::Polytope;
 use parry3d::math::{Real, Vector};
 use parry3d::query::{Ray, RayIntersection};
 use parry3d::shape::{FeatureId, PolygonalFeature, SharedShape};

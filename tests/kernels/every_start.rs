@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DQuat, DVec3, EulerRot, Vec3};
-use isa_gjk::stats::Cost;
-use isa_gjk::support::{FaceId, Polytope, Support, VertexId};
-use isa_gjk::tolerance::SUPPORT_TIE;
+use isa_gjk::internals::stats::Cost;
+use isa_gjk::internals::support::{FaceId, Polytope, Support, VertexId};
+use isa_gjk::internals::tolerance::SUPPORT_TIE;
 use isa_gjk::{Hull, HullError, HullShape, IsaGjkDispatcher};
 use parry3d::math::Pose;
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};

@@ -5,9 +5,9 @@ use std::f64::consts::TAU;
 
 use glam::{DQuat, DVec2, DVec3, Vec3};
 use isa_gjk::Hull;
-use isa_gjk::stats::Cost;
-use isa_gjk::support::{Polytope, Support};
-use isa_gjk::tolerance::{MAX_DENT, SUPPORT_TIE};
+use isa_gjk::internals::stats::Cost;
+use isa_gjk::internals::support::{Polytope, Support};
+use isa_gjk::internals::tolerance::{MAX_DENT, SUPPORT_TIE};
 use testkit::cases::hulls;
 use testkit::generate::Rng;
 

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 use std::time::Instant;
 
 use glam::{DVec3, Vec3};
-use isa_gjk::stats::Cost;
-use isa_gjk::support::{Polytope, Support};
+use isa_gjk::internals::stats::Cost;
+use isa_gjk::internals::support::{Polytope, Support};
 use isa_gjk::{Hull, HullError};
 use testkit::generate::Rng;
 

@@ -3,11 +3,11 @@
 
 use glam::{DQuat, DVec3};
 use isa_gjk::Hull;
-use isa_gjk::epa::{EpaScratch, PolytopeCache, penetration};
-use isa_gjk::pose::RelativePose;
+use isa_gjk::internals::epa::{EpaScratch, PolytopeCache, penetration};
+use isa_gjk::internals::pose::RelativePose;
+use isa_gjk::internals::stats::{Cost, Stage};
+use isa_gjk::internals::support::Cso;
 use isa_gjk::query::{Answer, PairMemory, Query};
-use isa_gjk::stats::{Cost, Stage};
-use isa_gjk::support::Cso;
 use parry3d::math::Pose;
 use testkit::generate::Rng;
 

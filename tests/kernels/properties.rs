@@ -1,11 +1,11 @@
 //! Laws that hold for any two hulls at any pose, through the query and through the dispatcher.
 
 use glam::{DQuat, DVec3, Vec3};
-use isa_gjk::epa::EpaScratch;
-use isa_gjk::pose::RelativePose;
+use isa_gjk::internals::epa::EpaScratch;
+use isa_gjk::internals::pose::RelativePose;
+use isa_gjk::internals::stats::Cost;
+use isa_gjk::internals::support::{Cso, Polytope, Support};
 use isa_gjk::query::{Answer, PairMemory, Proximity, Query};
-use isa_gjk::stats::Cost;
-use isa_gjk::support::{Cso, Polytope, Support};
 use isa_gjk::{Hull, IsaGjkDispatcher};
 use parry3d::math::Pose;
 use parry3d::query::{Contact, QueryDispatcher};

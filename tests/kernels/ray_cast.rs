@@ -2,12 +2,12 @@
 
 use glam::{DQuat, DVec3, Vec3};
 use isa_gjk::Hull;
-use isa_gjk::gjk::{self, Outcome};
-use isa_gjk::pose::RelativePose;
-use isa_gjk::ray_cast::{RayCast, ray_cast};
-use isa_gjk::simplex::{Johnson, SignedVolumes, Voronoi};
-use isa_gjk::stats::Cost;
-use isa_gjk::support::{Cso, Support, VertexId};
+use isa_gjk::internals::gjk::{self, Outcome};
+use isa_gjk::internals::pose::RelativePose;
+use isa_gjk::internals::ray_cast::{RayCast, ray_cast};
+use isa_gjk::internals::simplex::{Johnson, SignedVolumes, Voronoi};
+use isa_gjk::internals::stats::Cost;
+use isa_gjk::internals::support::{Cso, Support, VertexId};
 use parry3d::math::Pose;
 use testkit::cases::{self, hulls};
 use testkit::generate::Rng;
@@ -176,7 +176,7 @@ impl<'a> Cast<'a> {
 
 /// How far a point is beyond the plane it violates most.
 fn outside(hull: &Hull, point: DVec3) -> f64 {
-    use isa_gjk::support::Polytope;
+    use isa_gjk::internals::support::Polytope;
     (0..hull.face_count() as u32)
         .map(|f| hull.face_normal(f).dot(point) - hull.face_offset(f))
         .fold(f64::NEG_INFINITY, f64::max)
@@ -262,7 +262,7 @@ fn cubes(cube: &Hull, from: Vec3, velocity: DVec3) -> Cast<'_> {
     }
 }
 
-fn expect_hit(answer: RayCast) -> isa_gjk::ray_cast::Impact {
+fn expect_hit(answer: RayCast) -> isa_gjk::internals::ray_cast::Impact {
     match answer {
         RayCast::Hit(impact) => impact,
         other => panic!("{other:?} instead of a hit"),

@@ -1,7 +1,7 @@
 //! A support point that GJK dropped from its simplex can come back: five points suffice.
 
 use glam::DVec3;
-use isa_gjk::simplex::{DistanceSubalgorithm, Johnson, SignedVolumes, Voronoi};
+use isa_gjk::internals::simplex::{DistanceSubalgorithm, Johnson, SignedVolumes, Voronoi};
 
 /// Found, and followed step by step, in rational arithmetic: no rounding brings the vertex back.
 const POINTS: [[f64; 3]; 5] = [

@@ -2,7 +2,7 @@
 //! optimality condition, on simplices of every kind of degeneracy.
 
 use glam::DVec3;
-use isa_gjk::simplex::{DistanceSubalgorithm, Johnson, Nearest, SignedVolumes, Voronoi};
+use isa_gjk::internals::simplex::{DistanceSubalgorithm, Johnson, Nearest, SignedVolumes, Voronoi};
 use oorandom::Rand64;
 use proptest::prelude::*;
 

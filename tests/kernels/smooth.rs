@@ -5,14 +5,14 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::{DQuat, DVec2, DVec3, Vec3};
 use isa_gjk::Hull;
-use isa_gjk::epa::{self, EpaScratch, Penetration};
-use isa_gjk::gjk::{self, Closest, Outcome};
-use isa_gjk::pose::RelativePose;
-use isa_gjk::primitive::{Ball, Cone, CuboidPolytope, Cylinder, Segment};
-use isa_gjk::ray_cast::{RayCast, ray_cast};
-use isa_gjk::simplex::Voronoi;
-use isa_gjk::stats::Cost;
-use isa_gjk::support::{Cso, Support};
+use isa_gjk::internals::epa::{self, EpaScratch, Penetration};
+use isa_gjk::internals::gjk::{self, Closest, Outcome};
+use isa_gjk::internals::pose::RelativePose;
+use isa_gjk::internals::primitive::{Ball, Cone, CuboidPolytope, Cylinder, Segment};
+use isa_gjk::internals::ray_cast::{RayCast, ray_cast};
+use isa_gjk::internals::simplex::Voronoi;
+use isa_gjk::internals::stats::Cost;
+use isa_gjk::internals::support::{Cso, Support};
 use parry3d::math::Pose;
 use testkit::generate::Rng;
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use isa_gjk::hull_shape::PreparedShapes;
+use isa_gjk::PreparedShapes;
 use isa_gjk::{HullShape, IsaGjkDispatcher};
 use parry3d::query::QueryDispatcher;
 use parry3d::shape::{Compound, CompoundFlags, ConvexPolyhedron};

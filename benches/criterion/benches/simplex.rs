@@ -4,7 +4,7 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use glam::DVec3;
-use isa_gjk::simplex::{DistanceSubalgorithm, Johnson, SignedVolumes, Voronoi};
+use isa_gjk::internals::simplex::{DistanceSubalgorithm, Johnson, SignedVolumes, Voronoi};
 use oorandom::Rand64;
 
 /// Enough that no branch predictor learns them by heart.

@@ -6,9 +6,9 @@ use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
-use isa_gjk::hull::Hull;
-use isa_gjk::stats::Cost;
-use isa_gjk::support::Support;
+use isa_gjk::internals::hull::Hull;
+use isa_gjk::internals::stats::Cost;
+use isa_gjk::internals::support::Support;
 use parry3d::shape::SupportMap;
 use testkit::pair::hull;
 

@@ -11,12 +11,12 @@ use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum, value_parser};
 use glam::Vec3;
-use isa_gjk::epa::EpaScratch;
-use isa_gjk::manifold::{self, ClipScratch};
-use isa_gjk::pose::RelativePose;
+use isa_gjk::internals::epa::EpaScratch;
+use isa_gjk::internals::manifold::{self, ClipScratch};
+use isa_gjk::internals::pose::RelativePose;
+use isa_gjk::internals::stats::Cost;
+use isa_gjk::internals::support::Cso;
 use isa_gjk::query::{Answer, PairMemory, Query};
-use isa_gjk::stats::Cost;
-use isa_gjk::support::Cso;
 use isa_gjk::{Hull, HullShape};
 use oorandom::Rand32;
 use rapier3d::prelude::{Pose, Real, Rotation};

@@ -1,11 +1,11 @@
 //! What is to be seen of a pair of hulls at one frame.
 
 use glam::DVec3;
-use isa_gjk::manifold::ContactPoint;
-use isa_gjk::pose::RelativePose;
+use isa_gjk::internals::manifold::ContactPoint;
+use isa_gjk::internals::pose::RelativePose;
+use isa_gjk::internals::stats::Cost;
+use isa_gjk::internals::support::{Polytope, Support};
 use isa_gjk::query::{Answer, Feature, PairMemory};
-use isa_gjk::stats::Cost;
-use isa_gjk::support::{Polytope, Support};
 use isa_gjk::{Hull, Stage};
 
 use crate::svg::{Canvas, Style};

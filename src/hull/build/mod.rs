@@ -1,8 +1,13 @@
 //! Building hulls: from points, from triangles, and from parry's polyhedra.
 
+mod clusters;
+mod faces;
 mod flat_sides;
+mod graph;
 pub(super) mod half_edge;
 mod morton;
 pub(super) mod point_cloud;
 pub(crate) mod polyhedron;
+mod regions;
+mod solid;
 mod validate;

@@ -1,142 +1,26 @@
-//! Building and validating hulls.
+//! What is refused as the surface of a hull.
 
 use glam::{DVec3, Vec3};
 
 use super::half_edge::{HalfEdgeMesh, next};
-use super::morton;
-use super::point_cloud;
+use super::regions::{area_vector, longest_side};
+use crate::hull::HullError;
 use crate::hull::climb::{self, HillClimb};
-use crate::hull::faces::{Faces, area_vector, longest_side};
-use crate::hull::graph::EdgeGraph;
-use crate::hull::scan::{self, Scan};
-use crate::hull::start_table::StartTable;
-use crate::hull::{Hull, HullError, SupportSearch};
-use crate::stats::Cost;
-use crate::support::{FaceId, Polytope};
+use crate::hull::faces::Faces;
+use crate::support::FaceId;
 use crate::tolerance::{BOWL, MAX_DENT, MAX_INWARD_HEIGHT, MIN_EXTENT};
 
 /// The most vertices a hull may have: its at most `2 n - 4` faces must have 16-bit ids.
-pub(in crate::hull) const MAX_VERTICES: usize = 32_768;
+pub(super) const MAX_VERTICES: usize = 32_768;
 
-impl Hull {
-    /// The convex hull of a point cloud, by parry's hull builder.
-    ///
-    /// Vertex ids are indices into [`points`](Self::points), not into the argument: points inside
-    /// the hull are dropped, equal points are one vertex, and the order is another.
-    ///
-    /// # Errors
-    /// Names what is wrong with the points, see [`HullError`].
-    ///
-    /// ```
-    /// use glam::Vec3;
-    /// use isa_gjk::Hull;
-    /// let corners = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z, Vec3::splat(0.1)];
-    /// let hull = Hull::from_points(&corners)?;
-    /// assert_eq!(hull.points().len(), 4); // the last point is inside
-    /// # Ok::<(), isa_gjk::HullError>(())
-    /// ```
-    pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
-        point_cloud::hull_of_points(points, Self::from_reordered_triangles)
-    }
-
-    /// As [`from_triangles`](Self::from_triangles), with the vertices in the order in which they are
-    /// quickest to climb over.
-    pub(in crate::hull) fn from_reordered_triangles(
-        points: Vec<Vec3>,
-        triangles: &[[u32; 3]],
-    ) -> Result<Self, HullError> {
-        if points.len() <= scan::LARGEST {
-            return Self::from_triangles(points, triangles);
-        }
-        let (points, triangles) = morton::morton_order(&points, triangles);
-        Self::from_triangles(points, &triangles)
-    }
-
-    /// From the triangulated surface of a convex polytope, counter-clockwise from outside.
-    ///
-    /// Vertex ids are indices into `points`.
-    ///
-    /// # Errors
-    /// Names what is wrong with the surface, see [`HullError`].
-    pub fn from_triangles(points: Vec<Vec3>, triangles: &[[u32; 3]]) -> Result<Self, HullError> {
-        if points.len() < 4 {
-            return Err(HullError::TooFewPoints);
-        }
-        if points.len() > MAX_VERTICES {
-            return Err(HullError::TooManyPoints);
-        }
-        validate_finite(&points)?;
-        validate_triangles(&points, triangles)?;
-        validate_distinct(&points)?;
-        let mesh = HalfEdgeMesh::new(points.len(), triangles)?;
-        // All arithmetic is f64: converted once.
-        let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
-        let (center, radius) = center_and_radius(&exact, triangles)?;
-        let at_flat_edge = validate_convex(&exact, &mesh, radius)?;
-        validate_single_layer(&exact, triangles, center, radius)?;
-
-        let (mut faces, merged) = Faces::new(&exact, &mesh, radius);
-        let mut graph = EdgeGraph::new(&mesh, &merged.face_of);
-        let climb = HillClimb {
-            points: &points,
-            graph: &graph,
-            center,
-            radius,
-        };
-        validate_no_bowl(climb, &faces)?;
-        faces.add_clusters(&exact, &graph, &merged);
-        let search = match Scan::new(&points, center, radius) {
-            Some(scan) => SupportSearch::Scan(scan),
-            None => {
-                graph.mark_plateau_search(|graph, v| {
-                    at_flat_edge[v as usize] || climb::has_short_edge(&exact, graph, radius, v)
-                });
-                let climb = HillClimb {
-                    points: &points,
-                    graph: &graph,
-                    center,
-                    radius,
-                };
-                SupportSearch::Climb(StartTable::new(points.len(), |dir, start| {
-                    climb::extreme_vertex(climb, dir, start, &mut Cost::default())
-                }))
-            }
-        };
-        let hull = Self {
-            points: points.into(),
-            search,
-            graph,
-            faces,
-            center,
-            radius,
-        };
-        hull.validate_interior()?;
-        Ok(hull)
-    }
-
-    /// The centre must be clearly inside of every face.
-    fn validate_interior(&self) -> Result<(), HullError> {
-        let deep_inside = (0..self.faces.len() as FaceId).all(|f| {
-            self.face_offset(f) - self.face_normal(f).dot(self.center) > MIN_EXTENT * self.radius
-        });
-        deep_inside.then_some(()).ok_or(HullError::Flat)
-    }
-}
-
-impl AsRef<Self> for Hull {
-    fn as_ref(&self) -> &Self {
-        self
-    }
-}
-
-pub(in crate::hull) fn validate_finite(points: &[Vec3]) -> Result<(), HullError> {
+pub(super) fn validate_finite(points: &[Vec3]) -> Result<(), HullError> {
     match points.iter().position(|p| !p.is_finite()) {
         Some(i) => Err(HullError::NotFinite(i)),
         None => Ok(()),
     }
 }
 
-fn validate_triangles(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), HullError> {
+pub(super) fn validate_triangles(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), HullError> {
     let bad = |&[a, b, c]: &[u32; 3]| {
         a == b || b == c || c == a || [a, b, c].iter().any(|&v| v as usize >= points.len())
     };
@@ -147,7 +31,7 @@ fn validate_triangles(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), Hul
 }
 
 /// No two points are in the same place: corners of a mesh that were not welded.
-fn validate_distinct(points: &[Vec3]) -> Result<(), HullError> {
+pub(super) fn validate_distinct(points: &[Vec3]) -> Result<(), HullError> {
     // Adding zero turns -0 into 0.
     let bits = |(i, p): (usize, &Vec3)| ((*p + Vec3::ZERO).to_array().map(f32::to_bits), i);
     let mut places: Vec<([u32; 3], usize)> = points.iter().enumerate().map(bits).collect();
@@ -160,7 +44,10 @@ fn validate_distinct(points: &[Vec3]) -> Result<(), HullError> {
 }
 
 /// The centre of volume, and the largest distance of a vertex from it.
-fn center_and_radius(points: &[DVec3], triangles: &[[u32; 3]]) -> Result<(DVec3, f64), HullError> {
+pub(super) fn center_and_radius(
+    points: &[DVec3],
+    triangles: &[[u32; 3]],
+) -> Result<(DVec3, f64), HullError> {
     let origin = points[0];
     let (mut volume, mut moment) = (0.0, DVec3::ZERO);
     for triangle in triangles {
@@ -190,7 +77,7 @@ fn center_and_radius(points: &[DVec3], triangles: &[[u32; 3]]) -> Result<(DVec3,
 ///
 /// A dent is as deep as the edge passes beneath the other diagonal of its two triangles. (Heights
 /// over the triangles' planes say nothing where these are slivers.)
-fn validate_convex(
+pub(super) fn validate_convex(
     points: &[DVec3],
     mesh: &HalfEdgeMesh<'_>,
     radius: f64,
@@ -221,7 +108,7 @@ fn validate_convex(
 
 /// No face has much of the hull before its plane. Each edge of a bowl is a dent within rounding, but
 /// many of them add up: the way up from the face leads to the rim.
-fn validate_no_bowl(climb: HillClimb<'_>, faces: &Faces) -> Result<(), HullError> {
+pub(super) fn validate_no_bowl(climb: HillClimb<'_>, faces: &Faces) -> Result<(), HullError> {
     for face in 0..faces.len() as FaceId {
         let normal = faces.normal(face);
         let corner = faces.polygon(face)[0].vertex.into();
@@ -239,7 +126,7 @@ fn validate_no_bowl(climb: HillClimb<'_>, faces: &Faces) -> Result<(), HullError
 /// All edges of a fold may be convex, and all edges of two layers that end in each other. Hull
 /// builders working in f32 leave such on needles, whose cross-section they take for rounding; a
 /// climb would be trapped there far below the top.
-fn validate_single_layer(
+pub(super) fn validate_single_layer(
     points: &[DVec3],
     triangles: &[[u32; 3]],
     center: DVec3,

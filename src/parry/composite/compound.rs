@@ -12,7 +12,8 @@ use parry3d::shape::{Compound, Shape};
 use crate::parry::composite::sub_manifolds::{SubManifolds, SubShape};
 use crate::parry::constraints::Constraints;
 use crate::parry::hull_cache::LastProved;
-use crate::parry::pair::Operand;
+use crate::parry::operand::Operand;
+use crate::parry::order::PairOrder;
 
 /// Of a compound with more parts than this, some prove their hulls more than once.
 const PROOFS: usize = 8;
@@ -52,19 +53,23 @@ pub(crate) fn compounds<M, C, F>(
     sub_manifolds.finish();
 }
 
-/// A compound and a convex shape; the convex one is the first if `swapped`.
+/// A compound and a convex shape; the compound is first in `order`.
 pub(crate) fn compound_and_convex<M, C, F>(
     mut sub_manifolds: SubManifolds<'_, M, C, F>,
     pos12: &Pose,
     compound: &Compound,
     convex: &dyn Shape,
-    swapped: bool,
+    order: PairOrder,
 ) where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
     F: PersistentQueryDispatcher<M, C>,
 {
-    let place = if swapped { pos12.inverse() } else { *pos12 };
+    let place = if order.is_reversed() {
+        pos12.inverse()
+    } else {
+        *pos12
+    };
     let whole = convex
         .compute_aabb(&place)
         .loosened(sub_manifolds.prediction);
@@ -72,7 +77,7 @@ pub(crate) fn compound_and_convex<M, C, F>(
     for i in compound.bvh().intersect_aabb(&whole) {
         let mut part = part(compound, i, LastProved::default());
         let pos = &compound.shapes()[i as usize].0;
-        if swapped {
+        if order.is_reversed() {
             sub_manifolds.update_pair(&(pos12 * pos), &mut whole_part, &mut part);
         } else {
             sub_manifolds.update_pair(&pos.inv_mul(pos12), &mut part, &mut whole_part);

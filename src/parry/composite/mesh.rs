@@ -15,7 +15,8 @@ use parry3d::shape::{
 use crate::parry::composite::sub_manifolds::{SubManifolds, SubShape};
 use crate::parry::constraints::Constraints;
 use crate::parry::hull_cache::LastProved;
-use crate::parry::pair::Operand;
+use crate::parry::operand::Operand;
+use crate::parry::order::PairOrder;
 
 /// A shape made of triangles.
 #[derive(Clone, Copy)]
@@ -58,19 +59,23 @@ impl<'a> Triangles<'a> {
     }
 }
 
-/// A shape made of triangles and a hull; the hull is the first if `swapped`.
+/// A shape made of triangles and a hull; the triangles are first in `order`.
 pub(crate) fn triangles_and_hull<M, C, F>(
     mut sub_manifolds: SubManifolds<'_, M, C, F>,
     pos12: &Pose,
     triangles: Triangles<'_>,
     hull: &dyn Shape,
-    swapped: bool,
+    order: PairOrder,
 ) where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
     F: PersistentQueryDispatcher<M, C>,
 {
-    let place = if swapped { pos12.inverse() } else { *pos12 };
+    let place = if order.is_reversed() {
+        pos12.inverse()
+    } else {
+        *pos12
+    };
     let near = hull.compute_aabb(&place).loosened(sub_manifolds.prediction);
     let mut hull = SubShape::whole(hull);
     let is_flagged = triangles.is_flagged();
@@ -86,7 +91,7 @@ pub(crate) fn triangles_and_hull<M, C, F>(
                 Constraints::None
             },
         };
-        if swapped {
+        if order.is_reversed() {
             sub_manifolds.update_pair(pos12, &mut hull, &mut part);
         } else {
             sub_manifolds.update_pair(pos12, &mut part, &mut hull);

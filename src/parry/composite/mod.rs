@@ -6,12 +6,11 @@
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::{
-    ContactManifoldsWorkspace, VoxelsShapeContactManifoldsWorkspace,
-    contact_manifolds_composite_shape_composite_shape, contact_manifolds_composite_shape_shape,
-    contact_manifolds_heightfield_composite_shape, contact_manifolds_heightfield_shape_shapes,
-    contact_manifolds_trimesh_shape_shapes, contact_manifolds_voxels_ball_shapes,
-    contact_manifolds_voxels_composite_shape_shapes, contact_manifolds_voxels_shape_shapes,
-    contact_manifolds_voxels_voxels_shapes,
+    ContactManifoldsWorkspace, contact_manifolds_composite_shape_composite_shape,
+    contact_manifolds_composite_shape_shape, contact_manifolds_heightfield_composite_shape,
+    contact_manifolds_heightfield_shape_shapes, contact_manifolds_trimesh_shape_shapes,
+    contact_manifolds_voxels_ball_shapes, contact_manifolds_voxels_composite_shape_shapes,
+    contact_manifolds_voxels_shape_shapes, contact_manifolds_voxels_voxels_shapes,
 };
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Shape, ShapeType};
@@ -21,14 +20,16 @@ mod mesh;
 pub(crate) mod scene;
 mod sub_manifolds;
 
-use crate::parry::dispatcher::IsaGjkDispatcher;
-use crate::parry::pair;
+use crate::parry::operand;
+use crate::parry::order::PairOrder;
+use crate::parry::update::Updater;
 use mesh::Triangles;
-use sub_manifolds::SubManifolds;
+use sub_manifolds::{SubManifolds, empty_workspace};
 
 /// Updates the manifolds of a pair in which a shape has parts. `false` if none has.
 pub(crate) fn contact_manifolds<M, C, F>(
-    dispatcher: &IsaGjkDispatcher<F>,
+    dispatcher: &dyn PersistentQueryDispatcher<M, C>,
+    updater: Updater<'_, F>,
     pos12: &Pose,
     shapes: [&dyn Shape; 2],
     prediction: Real,
@@ -38,13 +39,13 @@ pub(crate) fn contact_manifolds<M, C, F>(
 where
     M: Default + Clone + Send + Sync,
     C: Default + Copy + Send + Sync,
-    F: PersistentQueryDispatcher<M, C> + PersistentQueryDispatcher,
+    F: PersistentQueryDispatcher<M, C>,
 {
     use ShapeType::{Ball, HeightField, TriMesh, Voxels};
     // Parry's routines assert that boxes are not loosened by less than nothing.
     let prediction = prediction.max(0.0);
     let [s1, s2] = shapes;
-    if by_us(dispatcher, pos12, shapes, prediction, manifolds, workspace) {
+    if by_us(updater, pos12, shapes, prediction, manifolds, workspace) {
         return true;
     }
     let composites = [s1.as_composite_shape(), s2.as_composite_shape()];
@@ -97,13 +98,6 @@ where
     true
 }
 
-/// What rapier knows a pair by whose manifolds come and go: it enters them in its solver graph
-/// anew. An empty workspace of the type that parry uses for voxels: it can be saved and loaded,
-/// and parry's routines for other pairs see that it is not theirs.
-pub(crate) fn empty_workspace() -> ContactManifoldsWorkspace {
-    VoxelsShapeContactManifoldsWorkspace::<2>::new().into()
-}
-
 /// Leaves the one manifold that a pair of convex shapes has. If a shape had parts until now, the
 /// manifolds of its parts are still there, and rapier must notice that they go.
 pub(crate) fn reset_to_single<M: Default + Clone, C: Default + Copy>(
@@ -133,7 +127,7 @@ pub(crate) fn reset_to_single<M: Default + Clone, C: Default + Copy>(
 /// Compounds are ours whether or not they have a hull: to find out would take a look at every part in
 /// every update, however few of them are near.
 fn by_us<M, C, F>(
-    dispatcher: &IsaGjkDispatcher<F>,
+    updater: Updater<'_, F>,
     pos12: &Pose,
     [s1, s2]: [&dyn Shape; 2],
     prediction: Real,
@@ -145,25 +139,25 @@ where
     C: Default + Copy + Send + Sync,
     F: PersistentQueryDispatcher<M, C>,
 {
-    let begin =
-        |manifolds, workspace| SubManifolds::new(dispatcher, prediction, manifolds, workspace);
+    let begin = |manifolds, workspace| SubManifolds::new(updater, prediction, manifolds, workspace);
     if let [Some(c1), Some(c2)] = [s1.as_compound(), s2.as_compound()] {
         compound::compounds(begin(manifolds, workspace), pos12, [c1, c2]);
         return true;
     }
-    for (first, second, swapped) in [(s1, s2, false), (s2, s1, true)] {
+    for order in PairOrder::BOTH {
+        let [first, second] = order.to_kernel([s1, s2]);
         if let Some(compound) = first.as_compound()
             && second.is_convex()
         {
             let sub_manifolds = begin(manifolds, workspace);
-            compound::compound_and_convex(sub_manifolds, pos12, compound, second, swapped);
+            compound::compound_and_convex(sub_manifolds, pos12, compound, second, order);
             return true;
         }
         if let Some(triangles) = Triangles::of(first)
-            && pair::is_hull(second)
+            && operand::is_hull(second)
         {
             let sub_manifolds = begin(manifolds, workspace);
-            mesh::triangles_and_hull(sub_manifolds, pos12, triangles, second, swapped);
+            mesh::triangles_and_hull(sub_manifolds, pos12, triangles, second, order);
             return true;
         }
     }

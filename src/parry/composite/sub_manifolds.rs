@@ -5,16 +5,15 @@
 //! the pair comes back to them, see that it is not theirs, and begin anew.
 
 use parry3d::math::{Pose, Real};
-use parry3d::query::details::ContactManifoldsWorkspace;
+use parry3d::query::details::{ContactManifoldsWorkspace, VoxelsShapeContactManifoldsWorkspace};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, TypedWorkspaceData};
 use parry3d::shape::Shape;
 
-use crate::parry::composite;
 use crate::parry::constraints::Constraints;
-use crate::parry::dispatcher::IsaGjkDispatcher;
 use crate::parry::hull_cache::LastProved;
 use crate::parry::int_hash::IntMap;
-use crate::parry::pair::Operand;
+use crate::parry::operand::Operand;
+use crate::parry::update::Updater;
 
 /// A convex part, or a convex whole.
 pub(crate) struct SubShape<'a> {
@@ -39,7 +38,7 @@ impl<'a> SubShape<'a> {
 
 /// The manifolds of a pair, while they are brought up to date.
 pub(crate) struct SubManifolds<'a, M, C, F> {
-    dispatcher: &'a IsaGjkDispatcher<F>,
+    updater: Updater<'a, F>,
     pub prediction: Real,
     manifolds: &'a mut Vec<ContactManifold<M, C>>,
     /// How many of them are of this frame; those of parts that meet no more come behind.
@@ -67,7 +66,7 @@ where
     /// Our workspace, or one of parry's routines for such pairs, says that the manifolds are of
     /// these shapes. Without it they may be of shapes that were here before.
     pub fn new(
-        dispatcher: &'a IsaGjkDispatcher<F>,
+        updater: Updater<'a, F>,
         prediction: Real,
         manifolds: &'a mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
@@ -90,11 +89,11 @@ where
                 if !parrys {
                     manifolds.clear();
                 }
-                *workspace = Some(composite::empty_workspace());
+                *workspace = Some(empty_workspace());
             }
         }
         Self {
-            dispatcher,
+            updater,
             prediction,
             manifolds,
             done: 0,
@@ -113,10 +112,9 @@ where
         let manifold = self.manifold(part_1, part_2);
         let constraints = [part_1.constraints, part_2.constraints];
         // As parry's routines do: a pair that nobody supports has no contacts.
-        let _ = self.dispatcher.update_manifold(
+        let _ = self.updater.update(
             pos12,
             (part_1.operand.again(), part_2.operand.again()),
-            self.dispatcher.epochs.epoch(),
             constraints,
             self.prediction,
             &mut self.manifolds[manifold],
@@ -176,4 +174,11 @@ where
     pub fn finish(self) {
         self.manifolds.truncate(self.done);
     }
+}
+
+/// What rapier knows a pair by whose manifolds come and go: it enters them in its solver graph
+/// anew. An empty workspace of the type that parry uses for voxels: it can be saved and loaded,
+/// and parry's routines for other pairs see that it is not theirs.
+pub(crate) fn empty_workspace() -> ContactManifoldsWorkspace {
+    VoxelsShapeContactManifoldsWorkspace::<2>::new().into()
 }

@@ -195,8 +195,8 @@ mod tests {
             let each = |change: fn(Vec3) -> Vec3| points.iter().copied().map(change).collect();
             let mut moved_on = points.clone();
             moved_on.rotate_left(shift);
-            let mut swapped = points.clone();
-            swapped.swap(0, shift);
+            let mut exchanged = points.clone();
+            exchanged.swap(0, shift);
             let changes: [Vec<Vec3>; 7] = [
                 each(|p| -p),
                 each(|p| p * Vec3::new(-1.0, 1.0, 1.0)),
@@ -204,7 +204,7 @@ mod tests {
                 each(|p| p.map(f32::next_up)),
                 each(|p| p.zxy()),
                 moved_on,
-                swapped,
+                exchanged,
             ];
             for changed in changes.iter().filter(|changed| **changed != points) {
                 prop_assert!(!digest.matches(changed));

@@ -14,8 +14,7 @@ use crate::hull::build::polyhedron::{fingerprint, same_polyhedron};
 /// hulls, share the new one: in a loaded world each collider has a shape of its own.
 ///
 /// ```
-/// use isa_gjk::HullShape;
-/// use isa_gjk::hull_shape::PreparedShapes;
+/// use isa_gjk::{HullShape, PreparedShapes};
 /// use rapier3d::prelude::*;
 ///
 /// # let corners = [Vector::ZERO, Vector::X, Vector::Y, Vector::Z];

@@ -1,10 +1,11 @@
 //! The points of a manifold, and what they inherit from those of the frame before.
 
+use crate::parry::order::PairOrder;
+use crate::simd::{f32x4, u32x4};
 use glam::Vec3;
 use parry3d::math::Real;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
-use wide::{f32x4, u32x4};
 
 use crate::manifold::{Contacts, MAX_POINTS};
 use crate::map_pair::map_pair;
@@ -16,10 +17,10 @@ pub(crate) fn write_points<M, C: Default + Copy>(
     manifold: &mut ContactManifold<M, C>,
     contacts: &Contacts,
     border_radii: [f64; 2],
-    swapped: bool,
+    order: PairOrder,
 ) {
-    let normals = record::ordered([manifold.local_n1, manifold.local_n2], swapped);
-    let new_points = ManifoldPoints::new(contacts, normals, border_radii, swapped);
+    let normals = order.to_kernel([manifold.local_n1, manifold.local_n2]);
+    let new_points = ManifoldPoints::new(contacts, normals, border_radii, order);
     let count = contacts.len;
     let tracked = &mut manifold.points;
     let old = FeatureKeys::of(tracked);
@@ -47,7 +48,12 @@ struct ManifoldPoints {
 
 impl ManifoldPoints {
     #[inline(always)]
-    fn new(contacts: &Contacts, normals: [Vec3; 2], border_radii: [f64; 2], swapped: bool) -> Self {
+    fn new(
+        contacts: &Contacts,
+        normals: [Vec3; 2],
+        border_radii: [f64; 2],
+        order: PairOrder,
+    ) -> Self {
         let at_border = |(points, side): (&[f32x4; 3], usize)| {
             let [x, y, z] = *points;
             let to_border = normals[side] * border_radii[side] as Real;
@@ -63,7 +69,7 @@ impl ManifoldPoints {
             [pack(a), pack(b), pack(c), pack(d)]
         };
         // References, since which one comes first is selected.
-        let sides = record::ordered([(&contacts.on_1, 0), (&contacts.on_2, 1)], swapped);
+        let sides = order.to_caller([(&contacts.on_1, 0), (&contacts.on_2, 1)]);
         Self {
             points: map_pair(sides, at_border),
             distances: (contacts.distance - (border_radii[0] + border_radii[1]) as Real).to_array(),

@@ -16,7 +16,7 @@ use parry3d::query::{ContactManifold, TrackedContact};
 
 use crate::manifold::MAX_POINTS;
 use crate::map_pair::map_pair;
-use crate::parry::manifold::record;
+use crate::parry::order::PairOrder;
 use crate::pose::RelativePose;
 use crate::simd::DVec3x4;
 use crate::tolerance::{KEPT_ANGLE_COS, KEPT_DEPTH, KEPT_DRIFT};
@@ -31,7 +31,7 @@ pub(crate) struct Present<'a> {
     /// The radius of the smaller shape.
     pub radius: f64,
     /// The manifold's second shape is the kernels' first.
-    pub swapped: bool,
+    pub order: PairOrder,
 }
 
 /// Measures the contacts of a manifold anew where they are. Returns `false`, and changes nothing, if they
@@ -69,7 +69,7 @@ pub(crate) fn keep_contacts<M, C>(
     }
     manifold.points[deepest].dist = present.signed_distance as f32;
     let normals = map_pair(present.normals, |normal| normal.as_vec3());
-    [manifold.local_n1, manifold.local_n2] = record::ordered(normals, present.swapped);
+    [manifold.local_n1, manifold.local_n2] = present.order.to_caller(normals);
     true
 }
 
@@ -77,7 +77,7 @@ impl Present<'_> {
     /// Whether the normal is still about that of the manifold, seen from both shapes.
     #[inline]
     fn has_normals(&self, manifold: [Vec3; 2]) -> bool {
-        let [old_1, old_2] = record::ordered(manifold, self.swapped);
+        let [old_1, old_2] = self.order.to_kernel(manifold);
         let [new_1, new_2] = self.normals;
         old_1.as_dvec3().dot(new_1) >= KEPT_ANGLE_COS
             && old_2.as_dvec3().dot(new_2) >= KEPT_ANGLE_COS
@@ -92,7 +92,7 @@ impl Present<'_> {
         let points = |of: fn(&TrackedContact<C>) -> Vec3| {
             DVec3x4::gather(lanes, |contact| of(contact).as_dvec3())
         };
-        let (on_1, on_2) = if self.swapped {
+        let (on_1, on_2) = if self.order.is_reversed() {
             (points(|c| c.local_p2), points(|c| c.local_p1))
         } else {
             (points(|c| c.local_p1), points(|c| c.local_p2))

@@ -1,5 +1,6 @@
 //! The contact manifold of two convex shapes, coherently.
 
+mod by_parry;
 mod inherit;
 mod kept;
 pub(crate) mod record;
@@ -7,7 +8,6 @@ pub(crate) mod record;
 use glam::{DVec3, Vec3};
 use parry3d::math::{Pose, Real};
 use parry3d::query::ContactManifold;
-use parry3d::query::details::contact_manifold_pfm_pfm;
 use parry3d::shape::PolygonalFeatureMap;
 
 use crate::hull::Hull;
@@ -16,10 +16,11 @@ use crate::map_pair::map_pair;
 use crate::parry::constraints::{self, Constraints};
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space;
-use crate::parry::pair::{Pair, PairVisitor, Workspace};
-use crate::parry::scaled::Scale;
-use crate::pose::RelativePose;
-use crate::query::{self, Answer, PairMemory, Proximity, Query, Verdict};
+use crate::parry::order::PairOrder;
+use crate::parry::pair::{Pair, PairVisitor};
+use crate::parry::workspace::Workspace;
+use crate::pose::{RelativePose, ValidPose};
+use crate::query::{Answer, PairMemory, Proximity, Query, Start, Verdict};
 use crate::stats::{Cost, Left, SharedStats, Stage};
 use crate::support::{Cso, Polytope, Support};
 use crate::tolerance::UNCORRECTED;
@@ -47,10 +48,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
     // perf: in a call the pair would go through memory, which small queries notice.
     #[inline(always)]
     fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, workspace: &mut Workspace) -> Option<()> {
-        if !RelativePose::is_valid(self.pos12) {
-            return None;
-        }
-        let pose = pair.pose(self.pos12);
+        let pose = pair.pose(ValidPose::new(self.pos12)?);
         let cso = pair.cso(&pose);
         let max_distance = pair.core_distance(self.prediction, cso.size());
         let frame = AxisFrame::of(&cso);
@@ -69,7 +67,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             cost: &mut cost,
         };
         // Stage by stage: copying an answer stalls on store forwarding.
-        let answer = match record::read(self.manifold, pair.swapped, frame) {
+        let answer = match record::read(self.manifold, pair.order, frame) {
             PairMemory::None => query.start_from_centers(),
             PairMemory::Axis(axis, ids) => match query.test_axis(axis, ids) {
                 Ok(apart) => {
@@ -77,7 +75,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                     record::set_axis(self.manifold, &apart, frame);
                     return Some(());
                 }
-                Err(vertex) => query.start_from_tilted_axis(axis, vertex, query::WARM),
+                Err(vertex) => query.start_from_tilted_axis(axis, vertex, Start::Warm),
             },
             PairMemory::Contact(normal, features) => {
                 let verdict = query.certify(features);
@@ -107,10 +105,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         pair: &Pair<'_, HalfSpace>,
         workspace: &mut Workspace,
     ) -> Option<()> {
-        if !RelativePose::is_valid(self.pos12) {
-            return None;
-        }
-        let pose = pair.pose(self.pos12);
+        let pose = pair.pose(ValidPose::new(self.pos12)?);
         let max_distance = pair.core_distance(self.prediction, pair.hull.radius());
         let mut cost = Cost::default();
         if half_space::is_sphere_apart(pair, &pose, max_distance) {
@@ -118,7 +113,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             record::forget(self.manifold);
             return Some(());
         }
-        let memory = record::read(self.manifold, pair.swapped, AxisFrame::First);
+        let memory = record::read(self.manifold, pair.order, AxisFrame::First);
         let near = half_space::deepest(pair, &pose, &memory, &mut cost);
         if near.signed_distance > max_distance {
             self.stats.record(Stage::Axis, &cost);
@@ -138,7 +133,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                 max_distance,
                 &mut workspace.clip,
             );
-            self.write(pair, rounded(&near, &pose, pair.swapped), &contacts);
+            self.write(pair, rounded(&near, &pose, pair.order), &contacts);
         }
         Some(())
     }
@@ -149,11 +144,9 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         features: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
     ) -> Option<()> {
-        if !RelativePose::is_valid(self.pos12) {
-            return None;
-        }
+        let pos12 = ValidPose::new(self.pos12)?;
         if self.manifold.points.is_empty() {
-            let pose = pair.pose(self.pos12);
+            let pose = pair.pose(pos12);
             let cso = pair.cso(&pose);
             let mut cost = Cost::default();
             let apart = Query {
@@ -163,7 +156,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                 scratch: &mut workspace.epa,
                 cost: &mut cost,
             }
-            .prove_apart(&record::read(self.manifold, pair.swapped, AxisFrame::First));
+            .prove_apart(&record::read(self.manifold, pair.order, AxisFrame::First));
             if let Some((apart, stage)) = apart {
                 self.stats.record(stage, &cost);
                 record::set_axis(self.manifold, &apart, AxisFrame::First);
@@ -190,50 +183,12 @@ fn normals(near: &Proximity, pose: &RelativePose) -> [DVec3; 2] {
 
 /// The same in the manifold's order and precision.
 #[inline(always)]
-fn rounded(near: &Proximity, pose: &RelativePose, swapped: bool) -> [Vec3; 2] {
+fn rounded(near: &Proximity, pose: &RelativePose, order: PairOrder) -> [Vec3; 2] {
     let normals = map_pair(normals(near, pose), |normal| normal.as_vec3());
-    record::ordered(normals, swapped)
+    order.to_caller(normals)
 }
 
 impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
-    /// To the routine for shapes with features, which searches with extreme vertices of the hull: ours
-    /// climbs to them.
-    fn update_by_parry<B: Support>(
-        &mut self,
-        pair: &Pair<'_, B>,
-        features: &dyn PolygonalFeatureMap,
-    ) {
-        let rotation = self.pos12.rotation;
-        record::convert_parry_axis(self.manifold, pair.swapped, rotation);
-        let scale = Scale::of(pair);
-        let shapes = [scale.shape(pair.hull), scale.shape(features)];
-        let [shape_1, shape_2] = record::ordered(shapes, pair.swapped);
-        let border_radii = pair
-            .border_radii
-            .map(|border_radius| scale.length(border_radius as Real));
-        let [border_radius_1, border_radius_2] = record::ordered(border_radii, pair.swapped);
-        let (pos12, prediction) = (scale.pose(self.pos12), scale.length(self.prediction));
-        let [c1, c2] = self.constraints;
-        c1.with(|c1| {
-            c2.with(|c2| {
-                scale.with_manifold(self.manifold, |manifold| {
-                    contact_manifold_pfm_pfm(
-                        &pos12,
-                        &shape_1,
-                        border_radius_1,
-                        c1,
-                        &shape_2,
-                        border_radius_2,
-                        c2,
-                        prediction,
-                        manifold,
-                    );
-                });
-            });
-        });
-        record::convert_parry_axis(self.manifold, pair.swapped, rotation.inverse());
-    }
-
     /// Leaves the contacts where they are, if that is right, and returns whether it is. Otherwise it
     /// chooses them anew.
     #[inline(always)]
@@ -245,8 +200,8 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         max_distance: f64,
         scratch: &mut ClipScratch,
     ) -> bool {
-        let normals = rounded(near, cso.pose, pair.swapped);
-        let Some(constrained) = self.constrained(cso, pair.swapped, max_distance, normals) else {
+        let normals = rounded(near, cso.pose, pair.order);
+        let Some(constrained) = self.constrained(cso, pair.order, max_distance, normals) else {
             // Discarded: there is no contact, but there is a place to start from.
             record::set_hint(self.manifold, near, cso);
             return false;
@@ -277,7 +232,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
             normals: normals(near, pose),
             signed_distance: near.signed_distance - (pair.border_radii[0] + pair.border_radii[1]),
             radius,
-            swapped: pair.swapped,
+            order: pair.order,
         };
         kept::keep_contacts(self.manifold, &present)
     }
@@ -292,7 +247,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         scratch: &mut ClipScratch,
     ) {
         let contacts = manifold::contacts(cso, near, max_distance, scratch);
-        self.write(pair, rounded(near, cso.pose, pair.swapped), &contacts);
+        self.write(pair, rounded(near, cso.pose, pair.order), &contacts);
     }
 
     /// Chooses contacts along corrected `normals`, if each shape has a face that looks along its own.
@@ -304,7 +259,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         max_distance: f64,
         scratch: &mut ClipScratch,
     ) {
-        let [normal, _] = record::ordered(normals, pair.swapped);
+        let [normal, _] = pair.order.to_kernel(normals);
         let normal = normal.as_dvec3().normalize();
         match manifold::contacts_along(cso, near, normal, max_distance, scratch) {
             Some(contacts) => self.write(pair, normals, &contacts),
@@ -319,7 +274,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
     #[inline(always)]
     fn write<B>(&mut self, pair: &Pair<'_, B>, normals: [Vec3; 2], contacts: &Contacts) {
         [self.manifold.local_n1, self.manifold.local_n2] = normals;
-        write_points(self.manifold, contacts, pair.border_radii, pair.swapped);
+        write_points(self.manifold, contacts, pair.border_radii, pair.order);
     }
 
     /// The contact's normals as the constraints leave them, if they do.
@@ -327,14 +282,14 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
     fn constrained<B: Polytope>(
         &self,
         cso: &Cso<'_, Hull, B>,
-        swapped: bool,
+        order: PairOrder,
         max_distance: f64,
         normals: [Vec3; 2],
     ) -> Option<[Vec3; 2]> {
         match self.constraints {
             // Only parts of meshes and compounds have some.
             [Constraints::None, Constraints::None] => Some(normals),
-            both => constraints::correct(both, self.pos12, (cso, swapped), max_distance, normals),
+            both => constraints::correct(both, self.pos12, (cso, order), max_distance, normals),
         }
     }
 }

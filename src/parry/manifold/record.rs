@@ -12,11 +12,12 @@
 //!
 //! What another dispatcher or a different pair left there is as good as any other hint.
 
+use crate::parry::order::PairOrder;
+use crate::simd::u32x4;
 use glam::{DVec3, Vec3};
 use parry3d::math::Rotation;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
-use wide::u32x4;
 
 use crate::gjk::SeparatingAxis;
 use crate::map_pair::map_pair;
@@ -65,14 +66,14 @@ impl<'a> AxisFrame<'a> {
     }
 }
 
-/// Reads what the previous frame left. `swapped`: the manifold's second shape is the kernels' first.
+/// Reads what the previous frame left.
 #[inline(always)]
 pub(crate) fn read<M, C>(
     manifold: &ContactManifold<M, C>,
-    swapped: bool,
+    order: PairOrder,
     frame: AxisFrame<'_>,
 ) -> PairMemory {
-    let stored = if swapped && !manifold.points.is_empty() {
+    let stored = if order.is_reversed() && !manifold.points.is_empty() {
         manifold.local_n2
     } else {
         manifold.local_n1
@@ -87,7 +88,7 @@ pub(crate) fn read<M, C>(
             PairMemory::Axis(frame.to_kernel(axis), [n2.x as u32, n2.y as u32])
         }
         Some(point) => match (unpack(point.fid1), unpack(point.fid2)) {
-            (Some(f1), Some(f2)) => PairMemory::Contact(axis, ordered([f1, f2], swapped)),
+            (Some(f1), Some(f2)) => PairMemory::Contact(axis, order.to_kernel([f1, f2])),
             _ => PairMemory::Axis(axis, [0, 0]),
         },
     }
@@ -135,10 +136,10 @@ fn as_vector(ids: [VertexId; 2]) -> Vec3 {
 /// inverse.
 pub(crate) fn convert_parry_axis<M, C>(
     manifold: &mut ContactManifold<M, C>,
-    swapped: bool,
+    order: PairOrder,
     rotation: Rotation,
 ) {
-    if swapped && manifold.points.is_empty() {
+    if order.is_reversed() && manifold.points.is_empty() {
         manifold.local_n1 = -(rotation * manifold.local_n1);
     }
 }
@@ -155,12 +156,6 @@ pub(crate) fn set_hint<A: Polytope, B: Polytope, M, C>(
         ids: query::vertices(cso, near.features),
     };
     set_axis(manifold, &start, AxisFrame::of(cso));
-}
-
-/// What belongs to the two shapes of a pair, from the kernels' order to the manifold's or back.
-#[inline]
-pub(crate) fn ordered<T>([a, b]: [T; 2], swapped: bool) -> [T; 2] {
-    if swapped { [b, a] } else { [a, b] }
 }
 
 /// A vector that is a unit vector up to rounding, or nothing. (Separations along it are then right

@@ -6,9 +6,10 @@ use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus};
 use parry3d::shape::{PolygonalFeatureMap, Shape};
 
 use crate::hull::Hull;
-use crate::parry::pair::{self, Pair, PairVisitor, Workspace};
-use crate::parry::scene::separation::{CallerProximity, KernelFrame};
-use crate::pose::RelativePose;
+use crate::parry::pair::{self, Pair, PairVisitor};
+use crate::parry::scene::caller::{CallerProximity, KernelFrame};
+use crate::parry::workspace::Workspace;
+use crate::pose::ValidPose;
 use crate::query::{Answer, PairMemory, Query};
 use crate::ray_cast::{Impact, RayCast, ray_cast};
 use crate::simplex::Preferred;
@@ -73,15 +74,15 @@ impl Cast<'_> {
         overlap: impl FnOnce(&Cso<'_, Hull, B>, DVec3, &KernelFrame<'_>) -> Option<Option<ShapeCastHit>>,
     ) -> Option<Option<ShapeCastHit>> {
         let moves = self.velocity.is_finite() && self.velocity != Vector::ZERO;
-        if !(moves && RelativePose::is_valid(self.pos12)) {
+        let Some(pos12) = ValidPose::new(self.pos12).filter(|_| moves) else {
             return Some(None);
-        }
-        let pose = pair.pose(self.pos12);
+        };
+        let pose = pair.pose(pos12);
         let cso = pair.cso(&pose);
         let frame = KernelFrame::new(pair, &pose);
         // That of the other shape as the hull sees it.
         let velocity = self.velocity.as_dvec3();
-        let velocity = if pair.swapped {
+        let velocity = if pair.order.is_reversed() {
             -pose.direction_to_1(velocity)
         } else {
             velocity

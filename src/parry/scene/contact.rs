@@ -6,11 +6,12 @@ use parry3d::shape::{PolygonalFeatureMap, Shape};
 
 use crate::epa;
 use crate::parry::convert::HalfSpace;
-use crate::parry::pair::{self, Pair, PairVisitor, Workspace};
+use crate::parry::pair::{self, Pair, PairVisitor};
 use crate::parry::scaled;
-use crate::parry::scene::separation::{
-    CallerProximity, KernelFrame, Separation, SeparationQuery, over_half_space, valid_pose,
-};
+use crate::parry::scene::caller::{CallerProximity, KernelFrame};
+use crate::parry::scene::separation::{Separation, SeparationQuery, over_half_space};
+use crate::parry::workspace::Workspace;
+use crate::pose::ValidPose;
 use crate::query::{Answer, PairMemory, Query};
 use crate::stats::Cost;
 use crate::support::{Polytope, Support};
@@ -35,7 +36,7 @@ struct ContactQuery<'a> {
 impl ContactQuery<'_> {
     /// The contact of shapes that touch or overlap, by EPA.
     fn depth<B: Support>(&self, pair: &Pair<'_, B>, workspace: &mut Workspace) -> Option<Contact> {
-        let pose = valid_pose(pair, self.pos12)?;
+        let pose = pair.pose(ValidPose::new(self.pos12)?);
         let cost = &mut Cost::default();
         let found = epa::penetration(&pair.cso(&pose), &[], &mut workspace.epa, cost)?;
         let points = [found.on_1, found.on_2];
@@ -56,7 +57,7 @@ impl PairVisitor for ContactQuery<'_> {
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,
     ) -> Option<Self::Answer> {
-        let pose = valid_pose(pair, self.pos12)?;
+        let pose = pair.pose(ValidPose::new(self.pos12)?);
         let cso = pair.cso(&pose);
         let (answer, _) = Query {
             cso: &cso,

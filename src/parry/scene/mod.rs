@@ -1,5 +1,6 @@
 //! Queries without memory.
 
+mod caller;
 pub(crate) mod cast;
 mod contact;
 mod dispatch;

@@ -3,19 +3,19 @@
 //! Only `contact` needs to know how deep shapes overlap; these end with GJK. Shapes that are apart by no more
 //! than [`MIN_DIRECTED_DISTANCE`](crate::tolerance::MIN_DIRECTED_DISTANCE) touch, for all of them.
 
-use glam::DVec3;
 use parry3d::math::{Pose, Real};
-use parry3d::query::{ClosestPoints, Contact};
+use parry3d::query::ClosestPoints;
 use parry3d::shape::{PolygonalFeatureMap, Shape};
 
 use crate::epa;
 use crate::gjk::{self, Outcome};
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space;
-use crate::parry::manifold::record::ordered;
-use crate::parry::pair::{self, Pair, PairVisitor, Workspace};
-use crate::pose::RelativePose;
-use crate::query::{PairMemory, Proximity};
+use crate::parry::pair::{self, Pair, PairVisitor};
+use crate::parry::scene::caller::{CallerProximity, KernelFrame};
+use crate::parry::workspace::Workspace;
+use crate::pose::ValidPose;
+use crate::query::PairMemory;
 use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{CsoVertex, Polytope, Support};
@@ -51,56 +51,6 @@ pub(crate) fn closest_points(
         }
         Separation::Beyond => ClosestPoints::Disjoint,
     })
-}
-
-/// The nearest points of a pair, its rounded borders accounted for. Normals and points are in
-/// their own shapes' frames.
-pub(crate) struct CallerProximity {
-    pub signed_distance: f64,
-    pub normals: [DVec3; 2],
-    pub points: [DVec3; 2],
-}
-
-impl CallerProximity {
-    pub fn of_proximity(near: &Proximity, frame: &KernelFrame<'_>) -> Self {
-        frame.near(near.normal, [near.on_1, near.on_2], near.signed_distance)
-    }
-
-    pub(super) fn contact(&self) -> Contact {
-        let [p1, p2] = self.points.map(|p| p.as_vec3());
-        let [n1, n2] = self.normals.map(|n| n.as_vec3());
-        Contact::new(p1, p2, n1, n2, self.signed_distance as Real)
-    }
-}
-
-/// How the kernels see a pair: the hull first, in whose frame they answer.
-pub(crate) struct KernelFrame<'a> {
-    /// Of the other shape, in the frame of the hull.
-    pose: &'a RelativePose,
-    border_radii: [f64; 2],
-    swapped: bool,
-}
-
-impl<'a> KernelFrame<'a> {
-    pub fn new<B>(pair: &Pair<'_, B>, pose: &'a RelativePose) -> Self {
-        Self {
-            pose,
-            border_radii: pair.border_radii,
-            swapped: pair.swapped,
-        }
-    }
-
-    /// From the normal and the points of the cores, in the frame of the hull.
-    pub fn near(&self, normal: DVec3, [on_1, on_2]: [DVec3; 2], distance: f64) -> CallerProximity {
-        let normals = [normal, -self.pose.direction_to_2(normal)];
-        let points = [on_1, self.pose.point_to_2(on_2)];
-        let points = [0, 1].map(|i| points[i] + normals[i] * self.border_radii[i]);
-        CallerProximity {
-            signed_distance: distance - self.border_radii[0] - self.border_radii[1],
-            normals: ordered(normals, self.swapped),
-            points: ordered(points, self.swapped),
-        }
-    }
 }
 
 /// What lies between two shapes.
@@ -150,7 +100,7 @@ impl SeparationQuery<'_> {
         gap: f64,
         workspace: &mut Workspace,
     ) -> Option<Separation> {
-        let pose = valid_pose(pair, self.pos12)?;
+        let pose = pair.pose(ValidPose::new(self.pos12)?);
         let cso = pair.cso(&pose);
         let cost = &mut Cost::default();
         let size = cso.size();
@@ -225,17 +175,13 @@ impl PairVisitor for SeparationQuery<'_> {
     }
 }
 
-pub(super) fn valid_pose<B>(pair: &Pair<'_, B>, pos12: &Pose) -> Option<RelativePose> {
-    RelativePose::is_valid(pos12).then(|| pair.pose(pos12))
-}
-
 /// Where a hull is deepest in a half-space, or `None` if it is farther away than `max_distance`.
 pub(super) fn over_half_space(
     pair: &Pair<'_, HalfSpace>,
     pos12: &Pose,
     max_distance: Real,
 ) -> Option<Option<CallerProximity>> {
-    let pose = valid_pose(pair, pos12)?;
+    let pose = pair.pose(ValidPose::new(pos12)?);
     let max_distance = pair.core_distance(max_distance, pair.hull.radius());
     if half_space::is_sphere_apart(pair, &pose, max_distance) {
         return Some(None);

@@ -23,22 +23,11 @@ use super::verdict::{FacetEdge, Verdict};
 use crate::gjk::SeparatingAxis;
 use crate::map_pair::map_pair;
 use crate::pose::RelativePose;
-use crate::query::Proximity;
+use crate::query::types::{Feature, Proximity};
 use crate::stats::Cost;
-use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
+use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 use crate::tolerance::PARALLEL_EDGES;
 use crate::tuning::SHALLOW;
-
-/// A part of a polytope's boundary.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Feature {
-    /// A vertex.
-    Vertex(VertexId),
-    /// An edge.
-    Edge(u32),
-    /// A face.
-    Face(FaceId),
-}
 
 /// Re-evaluates the facet that `features` span.
 #[inline]

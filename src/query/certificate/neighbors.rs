@@ -12,7 +12,8 @@ use glam::DVec3;
 
 use super::polygon::ball_is_inside;
 use super::verdict::FacetEdge;
-use crate::query::{Feature, Proximity, gauss_map};
+use crate::query::gauss_map;
+use crate::query::types::{Feature, Proximity};
 use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
 
 /// Of facets with more corners nothing is proved here. They are large; so mostly their own pyramid does.
@@ -176,8 +177,8 @@ mod tests {
     use super::*;
     use crate::epa::{self, EpaScratch};
     use crate::hull::Hull;
-    use crate::query::Verdict;
     use crate::query::certificate::facet;
+    use crate::query::certificate::verdict::Verdict;
     use crate::query::gauss_map::tests::{direction, random_pose};
     use crate::query::seeds::EpaSeeds;
     use crate::stats::Cost;

@@ -1,8 +1,8 @@
 //! A facet of the Minkowski difference as a polygon, and the origin: whether it projects inside, and
 //! how deep it is in the pyramid beneath.
 
+use crate::simd::f32x4;
 use glam::DVec3;
-use wide::f32x4;
 
 use crate::map_pair::map_pair;
 use crate::support::{FaceId, FacePoints, Polytope};

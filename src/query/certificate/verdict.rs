@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::gjk::SeparatingAxis;
 use crate::map_pair::map_pair;
 use crate::pose::RelativePose;
-use crate::query::Proximity;
+use crate::query::types::Proximity;
 use crate::support::{CsoVertex, VertexId};
 
 /// What a pair of features turned out to prove.
@@ -49,7 +49,7 @@ impl FacetEdge {
 }
 
 impl Verdict {
-    /// From the frame of shape 2, with the shapes swapped, to frame 1.
+    /// From the frame of shape 2, with the shapes in the other order, to frame 1.
     #[inline]
     pub(in crate::query) fn reversed(&self, pose: &RelativePose) -> Self {
         let direction = |dir| -pose.direction_to_1(dir);

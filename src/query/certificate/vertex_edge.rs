@@ -8,8 +8,7 @@ use glam::DVec3;
 
 use crate::gjk;
 use crate::map_pair::map_pair;
-use crate::query::Feature;
-use crate::query::{Answer, Proximity};
+use crate::query::types::{Answer, Feature, Proximity};
 use crate::stats::Cost;
 use crate::support::{Cso, Polytope, VertexId};
 use crate::tolerance::MIN_DIRECTED_DISTANCE;

@@ -4,7 +4,7 @@ use std::f32::consts::PI;
 use std::fs;
 use std::path::Path;
 
-use isa_gjk::hull_shape::PreparedShapes;
+use isa_gjk::PreparedShapes;
 use oorandom::Rand32;
 use rapier3d::prelude::*;
 use serde_json::Value;

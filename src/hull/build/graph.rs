@@ -1,0 +1,58 @@
+//! The edge graph of a surface.
+
+use std::array;
+
+use super::half_edge::{DirectedEdge, HalfEdgeMesh, triangle};
+use crate::hull::graph::{BLOCK, EdgeGraph, LAST, MARK, NeighborBlock, OVERFLOW, PLATEAU_SEARCH};
+use crate::support::VertexId;
+
+impl NeighborBlock {
+    /// From the sides that leave a vertex, of which the `first` is to fill up with.
+    fn new(sides: &[DirectedEdge], first: &DirectedEdge, face_of: &[u16]) -> Self {
+        let sides: [&DirectedEdge; BLOCK] = array::from_fn(|i| sides.get(i).unwrap_or(first));
+        Self {
+            to: sides.map(|side| side.to),
+            left: sides.map(|side| face_of[triangle(side.half_edge)]),
+        }
+    }
+
+    /// With others after it.
+    fn with_overflow(mut self, slot: usize) -> Self {
+        self.to[OVERFLOW] |= MARK;
+        self.left[LAST] = slot as u16;
+        self
+    }
+}
+
+impl EdgeGraph {
+    /// From a surface whose triangles went to the faces `face_of`.
+    pub fn new(mesh: &HalfEdgeMesh<'_>, face_of: &[u16]) -> Self {
+        let mut overflow = Vec::new();
+        let blocks = (0..mesh.vertex_count()).map(|v| {
+            let around = mesh.outgoing(v as u32);
+            let block = |sides| NeighborBlock::new(sides, &around[0], face_of);
+            // From the last one on, so that each knows where the next is.
+            let last = (around.len() - 2) / LAST;
+            (1..=last)
+                .rev()
+                .fold(block(&around[last * LAST..]), |after, number| {
+                    overflow.push(after);
+                    let sides = &around[(number - 1) * LAST..][..BLOCK];
+                    block(sides).with_overflow(overflow.len() - 1)
+                })
+        });
+        Self {
+            blocks: blocks.collect(),
+            overflow: overflow.into(),
+        }
+    }
+
+    /// Marks the vertices at which a climb must look into ties.
+    pub fn mark_plateau_search(&mut self, needs_plateau_search: impl Fn(&Self, VertexId) -> bool) {
+        for v in 0..self.blocks.len() {
+            if needs_plateau_search(self, v as VertexId) {
+                self.blocks[v].to[PLATEAU_SEARCH] |= MARK;
+            }
+        }
+    }
+}

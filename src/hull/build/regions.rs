@@ -1,0 +1,169 @@
+//! Regions of a surface that lie in one plane each.
+
+use std::cmp::Reverse;
+
+use glam::DVec3;
+
+use super::half_edge::{HalfEdge, HalfEdgeMesh, next, triangle};
+use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, MIN_TRIANGLE_HEIGHT};
+
+/// Twice the area vector of a triangle.
+pub(super) fn area_vector(points: &[DVec3], triangle: [u32; 3]) -> DVec3 {
+    let [a, b, c] = triangle.map(|v| points[v as usize]);
+    (b - a).cross(c - a)
+}
+
+pub(super) fn longest_side(points: &[DVec3], triangle: [u32; 3]) -> f64 {
+    let [a, b, c] = triangle.map(|v| points[v as usize]);
+    a.distance(b).max(b.distance(c)).max(c.distance(a))
+}
+
+/// Sets of triangles that lie in one plane each.
+pub(super) struct CoplanarRegions {
+    /// The triangles, region by region, and where the regions begin.
+    triangles: Vec<u32>,
+    first: Vec<usize>,
+    /// The region of each triangle.
+    pub of: Vec<u32>,
+}
+
+/// In no region yet.
+const FREE: u32 = u32::MAX;
+
+impl CoplanarRegions {
+    /// Grows from the largest triangles, whose normals are the most reliable.
+    pub fn grow(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, radius: f64) -> Self {
+        let triangles = mesh.triangles;
+        let vectors: Vec<DVec3> = triangles.iter().map(|&t| area_vector(points, t)).collect();
+        let areas: Vec<f64> = vectors.iter().map(|vector| vector.length()).collect();
+        // The bits of numbers that are not negative are in their order.
+        let largest_first = |area: &f64| Reverse(area.to_bits());
+        let mut seeds: Vec<_> = areas.iter().map(largest_first).zip(0..).collect();
+        seeds.sort_unstable();
+        let mut regions = Self {
+            triangles: Vec::with_capacity(triangles.len()),
+            first: vec![0],
+            of: vec![FREE; triangles.len()],
+        };
+        let (vectors, areas) = (&vectors, &areas);
+        // Whether a triangle lies in the plane of some others.
+        let joins = |some: &[u32]| {
+            let (normal, center) = plane(points, triangles, vectors, some);
+            move |t: usize| {
+                // The direction of a sliver is rounding only; its neighbours decide.
+                let turned = normal.dot(vectors[t]) < FACE_ANGLE_COS * areas[t];
+                let sliver = || {
+                    areas[t] <= MIN_TRIANGLE_HEIGHT * radius * longest_side(points, triangles[t])
+                };
+                let height = |v: u32| normal.dot(points[v as usize] - center);
+                let flat = |&v: &u32| height(v).abs() <= FACE_FLATNESS * radius;
+                (!turned || sliver()) && triangles[t].iter().all(flat)
+            }
+        };
+        for (_, seed) in seeds {
+            if regions.of[seed as usize] != FREE {
+                continue;
+            }
+            regions.add(mesh, seed, joins(&[seed]));
+            // The corners of a small triangle are rounded, so its plane leaves a large side at the
+            // far end. The plane of all triangles that it found there does not.
+            if let Some(found) = regions.take_back() {
+                regions.add(mesh, seed, joins(&found));
+            }
+        }
+        regions
+    }
+
+    /// A new region: the triangles that hang together with `seed` and join it.
+    fn add(&mut self, mesh: &HalfEdgeMesh<'_>, seed: u32, joins: impl Fn(usize) -> bool) {
+        let region = self.len() as u32;
+        let mut at = self.triangles.len();
+        self.of[seed as usize] = region;
+        self.triangles.push(seed);
+        while let Some(&t) = self.triangles.get(at) {
+            for side in 3 * t..3 * t + 3 {
+                let other = triangle(mesh.twin(side));
+                if self.of[other] == FREE && joins(other) {
+                    self.of[other] = region;
+                    self.triangles.push(other as u32);
+                }
+            }
+            at += 1;
+        }
+        self.first.push(self.triangles.len());
+    }
+
+    /// Takes the last region apart again, if it is more than its seed.
+    fn take_back(&mut self) -> Option<Vec<u32>> {
+        let region = self.len() - 1;
+        let start = self.first[region];
+        if self.triangles.len() - start == 1 {
+            return None;
+        }
+        self.first.pop();
+        let found = self.triangles.split_off(start);
+        for &t in &found {
+            self.of[t as usize] = FREE;
+        }
+        Some(found)
+    }
+
+    pub fn len(&self) -> usize {
+        self.first.len() - 1
+    }
+
+    pub fn triangles(&self, region: usize) -> &[u32] {
+        &self.triangles[self.first[region]..self.first[region + 1]]
+    }
+
+    /// Leaves the sides around a region in `polygon`; `false` if they are not one loop.
+    pub fn boundary(
+        &self,
+        mesh: &HalfEdgeMesh<'_>,
+        region: &[u32],
+        polygon: &mut Vec<HalfEdge>,
+    ) -> bool {
+        let inner = |side: HalfEdge| {
+            let [here, beyond] = [side, mesh.twin(side)].map(|h| self.of[triangle(h)]);
+            here == beyond
+        };
+        let sides = region.iter().flat_map(|&t| 3 * t..3 * t + 3);
+        let mut outer = sides.filter(|&side| !inner(side));
+        polygon.clear();
+        let Some(start) = outer.next() else {
+            return false; // the whole surface
+        };
+        let mut side = start;
+        loop {
+            polygon.push(side);
+            side = next(side);
+            while inner(side) {
+                side = next(mesh.twin(side));
+            }
+            if side == start {
+                return polygon.len() == 1 + outer.count();
+            }
+        }
+    }
+}
+
+/// The plane of some triangles with these area vectors: its normal, and their centroid.
+fn plane(
+    points: &[DVec3],
+    triangles: &[[u32; 3]],
+    vectors: &[DVec3],
+    some: &[u32],
+) -> (DVec3, DVec3) {
+    let (mut normal, mut moment, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+    for &t in some {
+        let [a, b, c] = triangles[t as usize].map(|v| points[v as usize]);
+        let weight = vectors[t as usize].length();
+        normal += vectors[t as usize];
+        moment += (a + b + c) * (weight / 3.0);
+        area += weight;
+    }
+    (
+        normal.normalize_or_zero(),
+        moment / area.max(f64::MIN_POSITIVE),
+    )
+}

@@ -1,0 +1,144 @@
+//! The shapes of a pair, and where a hull among them is prepared.
+
+use parry3d::math::Real;
+use parry3d::shape::{ConvexPolyhedron, RoundConvexPolyhedron, Shape, ShapeType};
+
+use crate::hull::Hull;
+use crate::parry::hull_cache::{EachProved, Find, HullCache, HullRef};
+use crate::parry::hull_shape::HullShape;
+
+/// A hull with a rounded border of this radius around it.
+#[derive(Clone, Copy)]
+pub(crate) struct HullHandle<'a> {
+    location: HullLocation<'a>,
+    pub border_radius: f64,
+}
+
+#[derive(Clone, Copy)]
+enum HullLocation<'a> {
+    /// The shape brings it along.
+    Own(&'a Hull),
+    /// It was prepared for the shape.
+    Found(HullRef),
+}
+
+impl<'a> HullHandle<'a> {
+    #[inline]
+    pub fn hull(&self, cache: &'a HullCache) -> Option<&'a Hull> {
+        match self.location {
+            HullLocation::Own(hull) => Some(hull),
+            HullLocation::Found(location) => cache.get(location),
+        }
+    }
+}
+
+/// A hull among parry's shapes.
+#[derive(Clone, Copy)]
+enum HullSource<'a> {
+    /// With a rounded border of this radius.
+    Plain(&'a ConvexPolyhedron, Real),
+    Prepared(&'a HullShape),
+}
+
+impl<'a> HullSource<'a> {
+    /// By the type that it is: what a user's shape shows as its typed shape may be a likeness only.
+    #[inline]
+    fn of(shape: &'a dyn Shape) -> Option<Self> {
+        if let Some(hull) = shape.as_shape() {
+            return Some(Self::Plain(hull, 0.0));
+        }
+        match shape.shape_type() {
+            ShapeType::Custom => shape.as_shape().map(Self::Prepared),
+            ShapeType::RoundConvexPolyhedron => {
+                let round: &RoundConvexPolyhedron = shape.as_shape()?;
+                Some(Self::Plain(&round.inner_shape, round.border_radius))
+            }
+            _ => None,
+        }
+    }
+}
+
+/// Whether a shape is a hull to us, so that pairs with it are ours to answer.
+pub(crate) fn is_hull(shape: &dyn Shape) -> bool {
+    HullSource::of(shape).is_some()
+}
+
+/// A shape of a pair, and how to find its hull.
+pub(crate) struct Operand<'a, F> {
+    pub shape: &'a dyn Shape,
+    hull: Option<HullSource<'a>>,
+    pub find: F,
+}
+
+impl<'a> Operand<'a, EachProved> {
+    /// A shape of which nothing is known.
+    #[inline]
+    pub fn alone(shape: &'a dyn Shape) -> Self {
+        Self::new(shape, EachProved)
+    }
+}
+
+impl<F> Operand<'_, F> {
+    /// Whether both are one hull. A rounded one may have the address of the one within it.
+    #[inline(always)]
+    pub fn is_same<G>(&self, other: &Operand<'_, G>) -> bool {
+        std::ptr::addr_eq(self.shape, other.shape) && self.border_radius() == other.border_radius()
+    }
+
+    #[inline]
+    fn border_radius(&self) -> Real {
+        match self.hull {
+            Some(HullSource::Plain(_, border_radius)) => border_radius,
+            _ => 0.0,
+        }
+    }
+}
+
+impl<'a, F: Find<'a>> Operand<'a, F> {
+    #[inline]
+    pub fn new(shape: &'a dyn Shape, find: F) -> Self {
+        let hull = HullSource::of(shape);
+        Self { shape, hull, find }
+    }
+
+    #[inline]
+    pub fn is_hull(&self) -> bool {
+        self.hull.is_some()
+    }
+
+    /// Whether it may consist of parts. Of most shapes it is known at once that they do not.
+    #[inline]
+    pub fn may_be_composite(&self) -> bool {
+        use ShapeType::{Compound, Custom, HeightField, Polyline, TriMesh, Voxels};
+        !self.is_hull()
+            && matches!(
+                self.shape.shape_type(),
+                Compound | Custom | HeightField | Polyline | TriMesh | Voxels
+            )
+    }
+
+    /// The same once more.
+    #[inline]
+    pub fn again(&mut self) -> Operand<'a, &mut F> {
+        Operand {
+            shape: self.shape,
+            hull: self.hull,
+            find: &mut self.find,
+        }
+    }
+
+    /// The hull, if the shape is one.
+    #[inline(always)]
+    pub fn prepare(&mut self, cache: &mut HullCache) -> Option<HullHandle<'a>> {
+        Some(match self.hull? {
+            HullSource::Plain(polyhedron, border_radius) => HullHandle {
+                location: HullLocation::Found(self.find.find(cache, polyhedron)?),
+                border_radius: border_radius.into(),
+            },
+            HullSource::Prepared(shape) => HullHandle {
+                location: HullLocation::Own(shape.hull()),
+                border_radius: 0.0,
+            },
+        })
+    }
+}

@@ -1,0 +1,45 @@
+//! The order of a pair.
+
+use crate::pose::{RelativePose, ValidPose};
+
+/// Which of the caller's shapes comes first here. The kernels have the hull first, and the routines for
+/// composites the shape with parts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum PairOrder {
+    /// The caller's first.
+    Given,
+    /// The caller's second.
+    Reversed,
+}
+
+impl PairOrder {
+    pub const BOTH: [Self; 2] = [Self::Given, Self::Reversed];
+
+    #[inline(always)]
+    pub fn is_reversed(self) -> bool {
+        self == Self::Reversed
+    }
+
+    /// From the order here to the caller's.
+    #[inline(always)]
+    pub fn to_caller<T>(self, [a, b]: [T; 2]) -> [T; 2] {
+        if self.is_reversed() { [b, a] } else { [a, b] }
+    }
+
+    /// From the caller's order to that here.
+    #[inline(always)]
+    pub fn to_kernel<T>(self, caller: [T; 2]) -> [T; 2] {
+        self.to_caller(caller)
+    }
+
+    /// The pose of the second shape in the frame of the first, from that of the caller's shapes.
+    #[inline(always)]
+    pub fn pose(self, pos12: ValidPose<'_>) -> RelativePose {
+        let pose = RelativePose::from(pos12);
+        if self.is_reversed() {
+            pose.inverse()
+        } else {
+            pose
+        }
+    }
+}

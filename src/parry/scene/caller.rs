@@ -1,0 +1,60 @@
+//! Answers as the caller sees them: in its order of the shapes, borders included.
+
+use glam::DVec3;
+use parry3d::math::Real;
+use parry3d::query::Contact;
+
+use crate::parry::order::PairOrder;
+use crate::parry::pair::Pair;
+use crate::pose::RelativePose;
+use crate::query::Proximity;
+
+/// The nearest points of a pair, its rounded borders accounted for. Normals and points are in
+/// their own shapes' frames.
+pub(crate) struct CallerProximity {
+    pub signed_distance: f64,
+    pub normals: [DVec3; 2],
+    pub points: [DVec3; 2],
+}
+
+impl CallerProximity {
+    pub fn of_proximity(near: &Proximity, frame: &KernelFrame<'_>) -> Self {
+        frame.near(near.normal, [near.on_1, near.on_2], near.signed_distance)
+    }
+
+    pub fn contact(&self) -> Contact {
+        let [p1, p2] = self.points.map(|p| p.as_vec3());
+        let [n1, n2] = self.normals.map(|n| n.as_vec3());
+        Contact::new(p1, p2, n1, n2, self.signed_distance as Real)
+    }
+}
+
+/// How the kernels see a pair: the hull first, in whose frame they answer.
+pub(crate) struct KernelFrame<'a> {
+    /// Of the other shape, in the frame of the hull.
+    pose: &'a RelativePose,
+    border_radii: [f64; 2],
+    order: PairOrder,
+}
+
+impl<'a> KernelFrame<'a> {
+    pub fn new<B>(pair: &Pair<'_, B>, pose: &'a RelativePose) -> Self {
+        Self {
+            pose,
+            border_radii: pair.border_radii,
+            order: pair.order,
+        }
+    }
+
+    /// From the normal and the points of the cores, in the frame of the hull.
+    pub fn near(&self, normal: DVec3, [on_1, on_2]: [DVec3; 2], distance: f64) -> CallerProximity {
+        let normals = [normal, -self.pose.direction_to_2(normal)];
+        let points = [on_1, self.pose.point_to_2(on_2)];
+        let points = [0, 1].map(|i| points[i] + normals[i] * self.border_radii[i]);
+        CallerProximity {
+            signed_distance: distance - self.border_radii[0] - self.border_radii[1],
+            normals: self.order.to_caller(normals),
+            points: self.order.to_caller(points),
+        }
+    }
+}
