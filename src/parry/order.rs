@@ -15,19 +15,19 @@ pub(crate) enum PairOrder {
 impl PairOrder {
     pub const BOTH: [Self; 2] = [Self::Given, Self::Reversed];
 
-    #[inline(always)]
+    #[inline]
     pub fn is_reversed(self) -> bool {
         self == Self::Reversed
     }
 
     /// From the order here to the caller's.
-    #[inline(always)]
+    #[inline]
     pub fn to_caller<T>(self, [a, b]: [T; 2]) -> [T; 2] {
         if self.is_reversed() { [b, a] } else { [a, b] }
     }
 
     /// From the caller's order to that here.
-    #[inline(always)]
+    #[inline]
     pub fn to_kernel<T>(self, caller: [T; 2]) -> [T; 2] {
         self.to_caller(caller)
     }

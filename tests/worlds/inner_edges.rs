@@ -3,7 +3,7 @@
 
 use std::f32::consts::{PI, TAU};
 
-use isa_gjk::hull_shape::PreparedShapes;
+use isa_gjk::PreparedShapes;
 use isa_gjk::{HullShape, IsaGjkDispatcher};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Compound, CompoundFlags};
