@@ -65,23 +65,11 @@ pub(crate) fn compound_and_convex<M, C, F>(
     C: Default + Copy + Send + Sync,
     F: PersistentQueryDispatcher<M, C>,
 {
-    let place = if order.is_reversed() {
-        pos12.inverse()
-    } else {
-        *pos12
-    };
-    let whole = convex
-        .compute_aabb(&place)
-        .loosened(sub_manifolds.prediction);
-    let mut whole_part = SubShape::whole(convex);
-    for i in compound.bvh().intersect_aabb(&whole) {
+    let reach = sub_manifolds.reach(convex, pos12, order);
+    let mut whole = SubShape::whole(convex);
+    for i in compound.bvh().intersect_aabb(&reach) {
         let mut part = part(compound, i, LastProved::default());
-        let pos = &compound.shapes()[i as usize].0;
-        if order.is_reversed() {
-            sub_manifolds.update_pair(&(pos12 * pos), &mut whole_part, &mut part);
-        } else {
-            sub_manifolds.update_pair(&pos.inv_mul(pos12), &mut part, &mut whole_part);
-        }
+        sub_manifolds.update_part(pos12, &mut part, &mut whole, order);
     }
     sub_manifolds.finish();
 }

@@ -5,7 +5,7 @@
 //! Here normals are computed where there is a contact to correct, and manifolds stay where they
 //! are.
 
-use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::bounding_volume::Aabb;
 use parry3d::math::Pose;
 use parry3d::query::PersistentQueryDispatcher;
 use parry3d::shape::{
@@ -71,12 +71,7 @@ pub(crate) fn triangles_and_hull<M, C, F>(
     C: Default + Copy + Send + Sync,
     F: PersistentQueryDispatcher<M, C>,
 {
-    let place = if order.is_reversed() {
-        pos12.inverse()
-    } else {
-        *pos12
-    };
-    let near = hull.compute_aabb(&place).loosened(sub_manifolds.prediction);
+    let near = sub_manifolds.reach(hull, pos12, order);
     let mut hull = SubShape::whole(hull);
     let is_flagged = triangles.is_flagged();
     triangles.each_near(&near, |id, triangle| {
@@ -91,11 +86,7 @@ pub(crate) fn triangles_and_hull<M, C, F>(
                 Constraints::None
             },
         };
-        if order.is_reversed() {
-            sub_manifolds.update_pair(pos12, &mut hull, &mut part);
-        } else {
-            sub_manifolds.update_pair(pos12, &mut part, &mut hull);
-        }
+        sub_manifolds.update_part(pos12, &mut part, &mut hull, order);
     });
     sub_manifolds.finish();
 }

@@ -4,6 +4,7 @@
 //! wants one of pairs with many manifolds, and drops it when a shape changes. Parry's routines, if
 //! the pair comes back to them, see that it is not theirs, and begin anew.
 
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::{ContactManifoldsWorkspace, VoxelsShapeContactManifoldsWorkspace};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, TypedWorkspaceData};
@@ -13,6 +14,7 @@ use crate::parry::constraints::Constraints;
 use crate::parry::hull_cache::LastProved;
 use crate::parry::int_hash::IntMap;
 use crate::parry::operand::Operand;
+use crate::parry::order::PairOrder;
 use crate::parry::update::Updater;
 
 /// A convex part, or a convex whole.
@@ -119,6 +121,34 @@ where
             self.prediction,
             &mut self.manifolds[manifold],
         );
+    }
+
+    /// The box around a whole shape within reach, in the frame of the shape with parts, which is first
+    /// in `order`.
+    pub fn reach(&self, whole: &dyn Shape, pos12: &Pose, order: PairOrder) -> Aabb {
+        let pose = if order.is_reversed() {
+            pos12.inverse()
+        } else {
+            *pos12
+        };
+        whole.compute_aabb(&pose).loosened(self.prediction)
+    }
+
+    /// A part and a whole shape; the shape with parts is first in `order`.
+    pub fn update_part(
+        &mut self,
+        pos12: &Pose,
+        part: &mut SubShape<'_>,
+        whole: &mut SubShape<'_>,
+        order: PairOrder,
+    ) {
+        if order.is_reversed() {
+            let pos12 = part.pos.map_or(*pos12, |pos| pos12 * pos);
+            self.update_pair(&pos12, whole, part);
+        } else {
+            let pos12 = part.pos.map_or(*pos12, |pos| pos.inv_mul(pos12));
+            self.update_pair(&pos12, part, whole);
+        }
     }
 
     /// Where the manifold of two parts is: mostly where it was, for parts come in the same order.
