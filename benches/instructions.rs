@@ -89,7 +89,8 @@ fn pairs(case: &str, size: usize) -> Vec<([SharedShape; 2], Pose)> {
     match case {
         "resting" => {
             let sides = size as u32 / 2;
-            let shapes = [0.5, 0.4].map(|height| hulls::prism(sides, height).expect("a prism"));
+            let shapes = [0.5, 0.4]
+                .map(|height| hulls::prism(sides, hulls::RADIUS, height).expect("a prism"));
             let trembling = |frame: usize| {
                 let [a, b] = [0.7, 1.1].map(|rate| 1e-6 * (rate * frame as f32).sin());
                 let turn = Rotation::from_scaled_axis(Vector::new(a, 0.3, b));

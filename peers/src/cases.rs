@@ -1,10 +1,9 @@
 //! The pairs and their trajectories.
 
-use std::f32::consts::TAU;
-
 use parry3d::math::{Pose, Vector};
-use parry3d::shape::{Cuboid, SharedShape};
+use parry3d::shape::SharedShape;
 use testkit::pair::{self, GAPS};
+use testkit::scenes::hulls;
 
 /// Two hulls, and where the second one is in the frame of the first, from update to update.
 pub struct Case {
@@ -30,23 +29,12 @@ fn pairs() -> impl Iterator<Item = (String, [SharedShape; 2])> {
         (format!("{vertices} random vertices"), shapes)
     });
     let boxes = [Vector::new(0.6, 0.5, 0.7), Vector::new(0.8, 0.4, 0.5)]
-        .map(|half| hull(&Cuboid::new(half).to_trimesh().0));
+        .map(|half| hulls::cuboid(half).expect("a solid"));
     let prisms = [12, 32].map(|sides| {
-        let shapes = [0.5, 0.7].map(|half_height| prism(sides, half_height));
+        let shapes =
+            [0.5, 0.7].map(|half_height| hulls::prism(sides, 1.0, half_height).expect("a solid"));
         (format!("prisms of {sides} sides"), shapes)
     });
     let boxes = ("boxes".to_owned(), boxes);
     random.into_iter().chain([boxes]).chain(prisms)
-}
-
-fn prism(sides: u32, half_height: f32) -> SharedShape {
-    let corners = (0..sides).flat_map(|side| {
-        let (sin, cos) = (TAU * side as f32 / sides as f32).sin_cos();
-        [-half_height, half_height].map(|y| Vector::new(cos, y, sin))
-    });
-    hull(&corners.collect::<Vec<_>>())
-}
-
-fn hull(points: &[Vector]) -> SharedShape {
-    SharedShape::convex_hull(points).expect("points of a solid")
 }

@@ -1,7 +1,5 @@
 //! Contacts keep their places on both shapes while these hardly move, and still tell the truth.
 
-use std::f32::consts::TAU;
-
 use glam::DVec3;
 use isa_gjk::{IsaGjkDispatcher, Stage};
 use parry3d::math::{Pose, Real, Rotation, Vector};
@@ -10,19 +8,14 @@ use parry3d::shape::{HeightField, HeightFieldFlags, SharedShape, TriMeshFlags};
 use parry3d::utils::Array2;
 use testkit::generate::Rng;
 use testkit::memory::{Manifold, Memory, cold_manifold};
+use testkit::scenes::hulls;
 
 /// The share of the smaller radius that the two points of a contact may be apart across the normal.
 const DRIFT: f64 = 2e-2;
 const PREDICTION: Real = 0.02;
 
 fn prism(sides: u32, radius: Real) -> SharedShape {
-    let points: Vec<Vector> = (0..sides)
-        .flat_map(|side| {
-            let (sin, cos) = (TAU * side as Real / sides as Real).sin_cos();
-            [-0.4, 0.4].map(|y| Vector::new(cos, y, sin) * radius)
-        })
-        .collect();
-    SharedShape::convex_hull(&points).expect("a solid")
+    hulls::prism(sides, radius, 0.4 * radius).expect("a solid")
 }
 
 fn grounds() -> [SharedShape; 3] {

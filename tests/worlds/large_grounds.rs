@@ -1,8 +1,6 @@
 //! Small bodies on one hull of up to 20 km. With rapier's default, 22 of these 48 bodies stay
 //! awake, all of them on the disc, and stand up to 24 mm too low.
 
-use std::f32::consts::TAU;
-
 use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::*;
 use testkit::scenes::hulls;
@@ -17,12 +15,7 @@ fn cuboid(half: Vector) -> SharedShape {
 }
 
 fn prism(sides: u32, radius: Real, half_height: Real) -> SharedShape {
-    let corners = (0..sides).flat_map(|side| {
-        let (sin, cos) = (TAU * side as Real / sides as Real).sin_cos();
-        [-half_height, half_height].map(|y| Vector::new(radius * cos, y, radius * sin))
-    });
-    let corners: Vec<_> = corners.collect();
-    hulls::hull(&corners, "a prism").expect("a solid")
+    hulls::prism(sides, radius, half_height).expect("a solid")
 }
 
 /// A box, or a disc of many sides, whose top is half of this thickness above its origin.

@@ -9,7 +9,7 @@ use oorandom::Rand32;
 use rapier3d::prelude::*;
 use testkit::quality::{Observer, Quality};
 use testkit::scanned::noisy_box;
-use testkit::scenes::hulls::{cuboid, prism};
+use testkit::scenes::hulls::{RADIUS, cuboid, prism};
 use testkit::scenes::{self, HullSource, Scene, SceneParams, World};
 
 fn params(hulls: HullSource, bodies: u32) -> SceneParams {
@@ -225,8 +225,8 @@ fn slide(narrow_phase: NarrowPhase, shape: &SharedShape, flags: TriMeshFlags) ->
 fn hulls_slide_over_the_inner_edges_of_a_mesh() {
     let hulls = [
         ("cube", cuboid(Vector::splat(0.3))),
-        ("12 sides", prism(12, 0.2)),
-        ("64 sides", prism(64, 0.2)),
+        ("12 sides", prism(12, RADIUS, 0.2)),
+        ("64 sides", prism(64, RADIUS, 0.2)),
     ];
     for (name, shape) in hulls {
         let shape = shape.expect("a solid");

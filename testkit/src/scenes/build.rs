@@ -117,7 +117,7 @@ fn shapes(
             let super::HullSource::Prism { sides } = params.hulls else {
                 return Err("coins are prisms".to_owned());
             };
-            vec![hulls::prism(sides, COIN_HALF_HEIGHT)?]
+            vec![hulls::prism(sides, hulls::RADIUS, COIN_HALF_HEIGHT)?]
         }
         Scene::Stack => hulls::upright(&params.hulls, count, random)?,
         Scene::Drum

@@ -35,7 +35,7 @@ pub fn make(
         HullSource::Prism { sides } => (0..distinct)
             .map(|_| {
                 let half_height = RADIUS * (0.4 + 0.3 * random.rand_float());
-                prism(*sides, half_height)
+                prism(*sides, RADIUS, half_height)
             })
             .collect(),
         HullSource::Box => (0..distinct)
@@ -82,12 +82,12 @@ pub fn sphere_points(count: u32, radius: Real, random: &mut Rand32) -> Vec<Vecto
         .collect()
 }
 
-/// An upright prism over a regular polygon.
-pub fn prism(sides: u32, half_height: Real) -> Result<SharedShape, String> {
+/// An upright prism over a regular polygon with corners at this radius.
+pub fn prism(sides: u32, radius: Real, half_height: Real) -> Result<SharedShape, String> {
     let points: Vec<_> = (0..sides)
         .flat_map(|side| {
             let (sin, cos) = (2.0 * PI * side as Real / sides as Real).sin_cos();
-            [-half_height, half_height].map(|y| Vector::new(RADIUS * cos, y, RADIUS * sin))
+            [-half_height, half_height].map(|y| Vector::new(radius * cos, y, radius * sin))
         })
         .collect();
     hull(&points, &format!("a prism of {sides} sides"))
