@@ -22,40 +22,48 @@ pub struct Verdict {
     pub worst: f64,
 }
 
-/// The signed distance at each pose, in diameters.
-pub fn exact(case: &Case) -> Vec<f64> {
-    let [a, b] = case.shapes.each_ref().map(solid);
-    let diameter = a.diameter().max(b.diameter());
-    let poses = case.poses.iter();
-    poses
-        .map(|pose| signed_distance(&a, &b, &exactly(pose)) / diameter)
-        .collect()
+/// What is right for a trajectory.
+pub struct Oracle {
+    /// Of the larger hull.
+    diameter: f64,
+    /// At each pose, in diameters.
+    distances: Vec<f64>,
 }
 
-/// Goes through the trajectory once and compares the deepest contacts.
-pub fn judge(case: &Case, exact: &[f64], engine: &mut dyn Engine) -> Verdict {
-    let [a, b] = case.shapes.each_ref().map(solid);
-    let diameter = a.diameter().max(b.diameter());
-    let mut verdict = Verdict::default();
-    engine.forget();
-    for (pose, &exact) in case.poses.iter().zip(exact) {
-        engine.update(pose);
-        let deepest = engine
-            .deepest()
-            .map(|distance| f64::from(distance) / diameter);
-        let overlaps = deepest.is_some_and(|deepest| deepest < 0.0);
-        verdict.missing += u32::from(exact < -UNDECIDED && !overlaps);
-        verdict.phantom += u32::from(exact > UNDECIDED && overlaps);
-        if let Some(deepest) = deepest
-            && exact < 0.0
-            && overlaps
-        {
-            let error = (deepest - exact).abs();
-            verdict.gross += u32::from(error > GROSS);
-            verdict.worst = verdict.worst.max(error);
+impl Oracle {
+    pub fn new(case: &Case) -> Self {
+        let [a, b] = case.shapes.each_ref().map(solid);
+        let diameter = a.diameter().max(b.diameter());
+        let poses = case.poses.iter().map(exactly);
+        let distances = poses.map(|pose| signed_distance(&a, &b, &pose) / diameter);
+        Self {
+            diameter,
+            distances: distances.collect(),
         }
     }
-    verdict
+
+    /// Goes through the trajectory once and compares the deepest contacts.
+    pub fn judge(&self, case: &Case, engine: &mut dyn Engine) -> Verdict {
+        let mut verdict = Verdict::default();
+        engine.forget();
+        for (pose, &exact) in case.poses.iter().zip(&self.distances) {
+            engine.update(pose);
+            let deepest = engine.deepest();
+            let overlap = deepest
+                .map(|distance| f64::from(distance) / self.diameter)
+                .filter(|&deepest| deepest < 0.0);
+            verdict.missing += u32::from(exact < -UNDECIDED && overlap.is_none());
+            verdict.phantom += u32::from(exact > UNDECIDED && overlap.is_some());
+            if let Some(overlap) = overlap
+                && exact < 0.0
+            {
+                let error = (overlap - exact).abs();
+                verdict.gross += u32::from(error > GROSS);
+                verdict.worst = verdict.worst.max(error);
+            }
+        }
+        verdict
+    }
 }
 
 fn exactly(pose: &Pose) -> ExactPose {

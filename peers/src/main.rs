@@ -14,7 +14,7 @@ use clap::{Parser, value_parser};
 
 use cases::Case;
 use engines::Engine;
-use judge::Verdict;
+use judge::{Oracle, Verdict};
 
 /// Times one pair's contact manifold in several engines, and judges their answers
 #[derive(Parser)]
@@ -71,10 +71,10 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// All engines on one trajectory, in turn, so that whatever else the machine does, it does to all.
 fn measure(case: &Case, turns: u32) -> Vec<Row> {
     let mut engines = engines::all(case);
-    let exact = judge::exact(case);
+    let oracle = Oracle::new(case);
     let verdicts: Vec<_> = engines
         .iter_mut()
-        .map(|engine| judge::judge(case, &exact, &mut **engine))
+        .map(|engine| oracle.judge(case, &mut **engine))
         .collect();
     let mut times = vec![Vec::new(); engines.len()];
     for _ in 0..turns {
