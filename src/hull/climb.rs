@@ -50,7 +50,7 @@ enum Plateau {
     /// A vertex above it.
     Exit(VertexId),
     /// It is the maximum.
-    ArgMax,
+    Summit,
     /// It is too large for a search.
     Large,
 }
@@ -85,7 +85,7 @@ pub(super) fn extreme_vertex(
                     continue;
                 }
                 Plateau::Large => return climb.scan(dir, at),
-                Plateau::ArgMax => {}
+                Plateau::Summit => {}
             }
         }
         return at;
@@ -149,7 +149,7 @@ impl HillClimb<'_> {
             highest = self.scan_overflow(after, highest);
         }
         let top = highest.finish();
-        let best = self.graph.neighbor(at, top.id as usize);
+        let best = self.graph.neighbor(at, top.id);
         (best.unwrap_or(at), top.value)
     }
 
@@ -205,7 +205,7 @@ impl HillClimb<'_> {
             }
             next += 1;
         }
-        Plateau::ArgMax
+        Plateau::Summit
     }
 
     /// The highest of all vertices, or `preferred` if that ties.

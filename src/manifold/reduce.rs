@@ -2,12 +2,11 @@
 
 use std::ops::RangeInclusive;
 
-use crate::simd::f32x4;
 use glam::Vec2;
 
 use super::clip_vertices::ClipVertices;
 use super::contacts::MAX_POINTS;
-use crate::simd::{LANES, first_lanes, lane_mask};
+use crate::simd::{ArgMax4, LANES, f32x4, first_lanes, lane_mask, u32x4};
 
 /// Corners to choose from, by their numbers.
 #[derive(Clone, Debug, Default)]
@@ -38,44 +37,16 @@ pub(super) struct CandidateSummary {
     pub at_origin: bool,
 }
 
-/// The greatest of many measures, of those that tie the first in the lowest lane.
-struct ArgMaxRow {
-    measures: f32x4,
-    /// The row of each, as bits.
-    rows: f32x4,
+/// The ids of the corners in a row. They count from 1: the id 0 is that of no corner.
+#[inline(always)]
+fn ids(row: usize) -> u32x4 {
+    u32x4::splat((LANES * row) as u32) + u32x4::new([1, 2, 3, 4])
 }
 
-/// The bits of no row.
-const NOWHERE: u32 = u32::MAX;
-
-impl ArgMaxRow {
-    /// Above `least`.
-    #[inline(always)]
-    fn new(least: f32) -> Self {
-        Self {
-            measures: f32x4::splat(least),
-            rows: f32x4::splat(f32::from_bits(NOWHERE)),
-        }
-    }
-
-    /// Looks at the measures of a row, those in the `wanted` lanes.
-    #[inline(always)]
-    fn update(&mut self, row: usize, measures: f32x4, wanted: f32x4) {
-        let greater = measures.simd_gt(self.measures) & wanted;
-        let row = f32x4::splat(f32::from_bits(row as u32));
-        self.measures = greater.bitselect(measures, self.measures);
-        self.rows = greater.bitselect(row, self.rows);
-    }
-
-    /// The number of the corner that it is of.
-    #[inline(always)]
-    fn finish(self) -> Option<usize> {
-        let measures = self.measures.to_array();
-        let greater = |a: usize, b: usize| if measures[b] > measures[a] { b } else { a };
-        let lane = greater(greater(0, 1), greater(2, 3));
-        let row = self.rows.to_array()[lane].to_bits();
-        (row != NOWHERE).then_some(row as usize * LANES + lane)
-    }
+/// The number of the corner with the greatest measure.
+#[inline(always)]
+fn corner(greatest: ArgMax4<f32x4>) -> Option<usize> {
+    greatest.finish().id.checked_sub(1)
 }
 
 impl Candidates {
@@ -95,14 +66,14 @@ impl Candidates {
             self.fours.resize(self.rows, CandidateRow::default());
         }
         let (least, most) = (f32x4::splat(*range.start()), f32x4::splat(*range.end()));
-        let mut deepest = ArgMaxRow::new(f32::NEG_INFINITY);
+        let mut deepest = ArgMax4::new(f32::NEG_INFINITY);
         let mut at_origin = f32x4::ZERO;
         for (row, (four, [x, y])) in self.fours.iter_mut().zip(corners.fours()).enumerate() {
             let distance = distances(row, x, y);
             let corners = lane_mask(first_lanes(corners.count - LANES * row));
             let there = corners & distance.simd_ge(least);
             let near = there & distance.simd_le(most);
-            deepest.update(row, -distance, near);
+            deepest.update_where(near, -distance, ids(row));
             at_origin |= near & (x * x + y * y).simd_le(f32x4::splat(same * same));
             *four = CandidateRow {
                 x,
@@ -113,7 +84,7 @@ impl Candidates {
             };
         }
         CandidateSummary {
-            deepest: deepest.finish(),
+            deepest: corner(deepest),
             at_origin: at_origin.any(),
         }
     }
@@ -133,11 +104,11 @@ impl Candidates {
     /// The nearest of the corners beyond the range, which is then no longer among them.
     #[inline(always)]
     pub fn pop_beyond_range(&mut self) -> Option<usize> {
-        let mut nearest = ArgMaxRow::new(f32::NEG_INFINITY);
+        let mut nearest = ArgMax4::new(f32::NEG_INFINITY);
         for (row, four) in self.fours().enumerate() {
-            nearest.update(row, -four.distance, four.beyond);
+            nearest.update_where(four.beyond, -four.distance, ids(row));
         }
-        let corner = nearest.finish()?;
+        let corner = corner(nearest)?;
         self.fours[corner / LANES].beyond &= lane_mask(!(1 << (corner % LANES)));
         Some(corner)
     }
@@ -158,13 +129,13 @@ impl Candidates {
         let line = corners.at(far) - first;
         // Areas over the line are heights times its length.
         let least = same * line.length();
-        let [mut left, mut right] = [ArgMaxRow::new(least), ArgMaxRow::new(least)];
+        let [mut left, mut right] = [ArgMax4::new(least), ArgMax4::new(least)];
         for (row, four) in self.fours().enumerate() {
             let area = (four.y - first.y) * line.x - (four.x - first.x) * line.y;
-            left.update(row, area, four.near);
-            right.update(row, -area, four.near);
+            left.update_where(four.near, area, ids(row));
+            right.update_where(four.near, -area, ids(row));
         }
-        match (left.finish(), right.finish()) {
+        match (corner(left), corner(right)) {
             // A patch on one side of the line: the last corner adds most area to the triangle.
             (Some(side), None) | (None, Some(side)) => {
                 let apex = corners.at(side) - first;
@@ -183,12 +154,12 @@ impl Candidates {
         least: f32,
         measure: impl Fn(f32x4, f32x4) -> f32x4,
     ) -> Option<usize> {
-        let mut greatest = ArgMaxRow::new(least);
+        let mut greatest = ArgMax4::new(least);
         for (row, four) in self.fours().enumerate() {
             let measures = measure(four.x - first.x, four.y - first.y);
-            greatest.update(row, measures, four.near);
+            greatest.update_where(four.near, measures, ids(row));
         }
-        greatest.finish()
+        corner(greatest)
     }
 }
 

@@ -83,7 +83,7 @@ fn first_edge_crossed<P: Polytope>(
     p: &P,
     vertex: VertexId,
     [normal, sideways]: [DVec3; 2],
-) -> ArgMax {
+) -> ArgMax<f64> {
     let mut first = ArgMax4::new(f64::NEG_INFINITY);
     for (ends, edges) in edges(p, vertex) {
         let (below, rise) = (edges.dot(normal).fast_min(f64x4::ZERO), edges.dot(sideways));
