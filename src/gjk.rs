@@ -13,7 +13,9 @@ use glam::DVec3;
 use crate::simplex::{DistanceSubalgorithm, Nearest};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Support, VertexId};
-use crate::tolerance::{DEPTH_GAP, GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, MIN_DIRECTED_DISTANCE};
+use crate::tolerance::{
+    DEPTH_GAP, GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, MIN_DIRECTED_DISTANCE, NEARLY_UNIT,
+};
 
 /// Convergence is finite, and even the adversarial families need far fewer iterations; the
 /// bound only guards against a stall that no other test sees.
@@ -133,9 +135,16 @@ pub struct SeparatingAxis {
     pub ids: [VertexId; 2],
 }
 
+/// What a support pair along an axis shows.
+pub enum AxisTest {
+    /// The axis separates the shapes by more than was asked about.
+    Separating(SeparatingAxis),
+    /// It does not: this vertex is extreme along it, and a search can go on from there.
+    Supporting(CsoVertex),
+}
+
 /// One support pair along a cached `axis` (unit, frame 1): is it still separating by more than
-/// `beyond`? The incremental part of separating-axis GJK. Also returns the vertex found, with
-/// which a GJK run can go on.
+/// `beyond`? The incremental part of separating-axis GJK.
 #[inline(always)]
 pub fn test_axis<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
@@ -143,7 +152,11 @@ pub fn test_axis<A: Support, B: Support>(
     start: [VertexId; 2],
     beyond: f64,
     cost: &mut Cost,
-) -> Result<SeparatingAxis, CsoVertex> {
+) -> AxisTest {
+    debug_assert!(
+        !axis.is_finite() || (axis.length_squared() - 1.0).abs() < 2.0 * NEARLY_UNIT,
+        "no unit vector: {axis}"
+    );
     let (on_2, id_2) = cso.support_2(axis, start[1], cost);
     // The bounding sphere of shape 1 may do: then none of its vertices is looked at. The axis may be longer
     // than 1 by its rounding; half of 1 and its square is not less than its length.
@@ -151,7 +164,7 @@ pub fn test_axis<A: Support, B: Support>(
     let reach_1 = axis.dot(cso.shape_1.center()) + cso.shape_1.radius() * longest;
     let separation = axis.dot(on_2) - reach_1;
     if separation > beyond {
-        return Ok(SeparatingAxis {
+        return AxisTest::Separating(SeparatingAxis {
             axis,
             separation,
             ids: [start[0], id_2],
@@ -165,13 +178,13 @@ pub fn test_axis<A: Support, B: Support>(
     };
     let separation = -axis.dot(vertex.w);
     if separation > beyond {
-        Ok(SeparatingAxis {
+        AxisTest::Separating(SeparatingAxis {
             axis,
             separation,
             ids: vertex.ids,
         })
     } else {
-        Err(vertex)
+        AxisTest::Supporting(vertex)
     }
 }
 

@@ -4,25 +4,47 @@ use crate::gjk::SeparatingAxis;
 use crate::parry::convert::HalfSpace;
 use crate::parry::pair::Pair;
 use crate::pose::RelativePose;
-use crate::query::{Feature, PairMemory, Proximity, vertex_of};
-use crate::stats::Cost;
+use crate::query::{Feature, PairMemory, Proximity, Sink, vertex_of};
+use crate::stats::{Cost, Stage};
 use crate::support::Support;
 
-/// Whether the bounding sphere of a hull is above a half-space by more than `beyond`. All hulls of a world are
-/// in a pair with its ground, and most of them end here.
+/// Hands the answer to `sink`, and returns the stage that found it.
 #[inline(always)]
-pub(crate) fn is_sphere_apart(
+pub(crate) fn run_into(
     pair: &Pair<'_, HalfSpace>,
     pose: &RelativePose,
-    beyond: f64,
-) -> bool {
+    max_distance: f64,
+    sink: &mut impl Sink,
+    cost: &mut Cost,
+) -> Stage {
+    // All hulls of a world are in a pair with its ground, and most of them end here.
+    if is_sphere_apart(pair, pose, max_distance) {
+        sink.spheres_apart();
+        return Stage::BoundingSpheres;
+    }
+    let near = deepest(pair, pose, &sink.memory(), cost);
+    if near.signed_distance <= max_distance {
+        sink.near(&near);
+        return Stage::Feature;
+    }
+    sink.separated(&SeparatingAxis {
+        axis: near.normal,
+        separation: near.signed_distance,
+        ids: [vertex_of(pair.hull, near.features[0]), 0],
+    });
+    Stage::Axis
+}
+
+/// Whether the bounding sphere of a hull is above a half-space by more than `beyond`.
+#[inline(always)]
+fn is_sphere_apart(pair: &Pair<'_, HalfSpace>, pose: &RelativePose, beyond: f64) -> bool {
     let center = pose.point_to_2(pair.hull.center());
     pair.other.normal.dot(center) - pair.hull.radius() > beyond
 }
 
 /// The vertex of a hull that is deepest in a half-space.
 #[inline(always)]
-pub(crate) fn deepest(
+fn deepest(
     pair: &Pair<'_, HalfSpace>,
     pose: &RelativePose,
     memory: &PairMemory,
@@ -44,14 +66,5 @@ pub(crate) fn deepest(
         on_1,
         on_2: on_1 + normal * signed_distance,
         features: [Feature::Vertex(vertex), Feature::Face(0)],
-    }
-}
-
-/// The plane's normal as a separating axis.
-pub(crate) fn axis(pair: &Pair<'_, HalfSpace>, near: &Proximity) -> SeparatingAxis {
-    SeparatingAxis {
-        axis: near.normal,
-        separation: near.signed_distance,
-        ids: [vertex_of(pair.hull, near.features[0]), 0],
     }
 }

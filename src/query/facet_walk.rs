@@ -6,8 +6,9 @@ use glam::DVec3;
 
 use super::certificate::verdict::{FacetEdge, Verdict};
 use super::certificate::{facet, vertex_edge};
+use super::pipeline::{Found, Start};
 use super::types::{Answer, Feature};
-use super::{Query, Start, gauss_map};
+use super::{Query, gauss_map};
 use crate::map_pair::map_pair;
 use crate::stats::Stage;
 use crate::support::{Polytope, VertexId};
@@ -35,19 +36,17 @@ struct FacetWalk {
 /// The facet to look at next, if there is one, and the ends of where it was looked for.
 type NextFacet = (Option<[Feature; 2]>, [[VertexId; 2]; 2]);
 
-type Found = Option<(Answer, Stage)>;
-
 impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     /// Re-evaluates the facet that `features` span.
     #[inline(always)]
-    pub(crate) fn certify(&mut self, features: [Feature; 2]) -> Verdict {
+    pub(super) fn certify(&mut self, features: [Feature; 2]) -> Verdict {
         let (max, tolerance) = (self.max_distance, self.tolerance());
         facet::certify(self.cso, features, max, tolerance, self.cost)
     }
 
     /// Answers by the facet of a contact that is remembered, if the `verdict` on it allows that, or goes
     /// on from there.
-    pub(crate) fn start_from_features(
+    pub(super) fn start_walk_from_features(
         &mut self,
         normal: DVec3,
         features: [Feature; 2],

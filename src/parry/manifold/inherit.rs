@@ -1,41 +1,43 @@
 //! The points of a manifold, and what they inherit from those of the frame before.
 
-use crate::parry::order::PairOrder;
-use crate::simd::{f32x4, u32x4};
 use glam::Vec3;
 use parry3d::math::Real;
-use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::query::TrackedContact;
 use parry3d::shape::PackedFeatureId;
 
+use super::record::{self, KernelManifold};
 use crate::manifold::{Contacts, MAX_POINTS};
 use crate::map_pair::map_pair;
-use crate::parry::manifold::record;
+use crate::parry::order::PairOrder;
 use crate::query::Feature;
+use crate::simd::{f32x4, u32x4};
 
-/// Replaces the manifold's points, and hands the data (the solver's impulses) of the old ones on.
-pub(crate) fn write_points<M, C: Default + Copy>(
-    manifold: &mut ContactManifold<M, C>,
-    contacts: &Contacts,
-    border_radii: [f64; 2],
-    order: PairOrder,
-) {
-    let normals = order.to_kernel([manifold.local_n1, manifold.local_n2]);
-    let new_points = ManifoldPoints::new(contacts, normals, border_radii, order);
-    let count = contacts.len;
-    let tracked = &mut manifold.points;
-    let old = FeatureKeys::of(tracked);
-    let new = FeatureKeys::new(new_points.features, count);
-    if old == new && tracked.len() == count {
-        for (i, tracked) in tracked.iter_mut().enumerate() {
-            *tracked = new_points.tracked(i, tracked.data);
-        }
-        return;
+impl<M, C: Default + Copy> KernelManifold<'_, M, C> {
+    /// Replaces the contacts, and hands the data (the solver's impulses) of the old ones on.
+    #[inline(always)]
+    pub fn set_contacts(&mut self, normals: [Vec3; 2], contacts: &Contacts) {
+        self.set_normals(normals);
+        self.replace_points(normals, contacts);
     }
-    let matches = match_old_points(tracked, &old, &new_points, &new, count);
-    let data = |i: usize| tracked.get(i).map_or_else(C::default, |old| old.data);
-    let inheritance = [data(0), data(1), data(2), data(3), C::default()];
-    tracked.clear();
-    tracked.extend((0..count).map(|i| new_points.tracked(i, inheritance[matches[i]])));
+
+    fn replace_points(&mut self, normals: [Vec3; 2], contacts: &Contacts) {
+        let new_points = ManifoldPoints::new(contacts, normals, self.border_radii, self.order);
+        let count = contacts.len;
+        let tracked = &mut self.manifold.points;
+        let old = FeatureKeys::of(tracked);
+        let new = FeatureKeys::new(new_points.features, count);
+        if old == new && tracked.len() == count {
+            for (i, tracked) in tracked.iter_mut().enumerate() {
+                *tracked = new_points.tracked(i, tracked.data);
+            }
+            return;
+        }
+        let matches = match_old_points(tracked, &old, &new_points, &new, count);
+        let data = |i: usize| tracked.get(i).map_or_else(C::default, |old| old.data);
+        let inheritance = [data(0), data(1), data(2), data(3), C::default()];
+        tracked.clear();
+        tracked.extend((0..count).map(|i| new_points.tracked(i, inheritance[matches[i]])));
+    }
 }
 
 /// Where contacts are, and between what, as the manifold sees the shapes: coordinate by coordinate, those

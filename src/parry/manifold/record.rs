@@ -12,23 +12,23 @@
 //!
 //! What another dispatcher or a different pair left there is as good as any other hint.
 
-use crate::parry::order::PairOrder;
-use crate::simd::u32x4;
 use glam::{DVec3, Vec3};
 use parry3d::math::Rotation;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
 
-use crate::gjk::SeparatingAxis;
 use crate::map_pair::map_pair;
+use crate::parry::order::PairOrder;
+use crate::parry::pair::Pair;
 use crate::pose::RelativePose;
-use crate::query::{self, Feature, PairMemory, Proximity};
-use crate::support::{Cso, Polytope, Support, VertexId};
+use crate::query::{Feature, PairMemory};
+use crate::simd::u32x4;
+use crate::support::{Cso, Support, VertexId};
 use crate::tolerance::NEARLY_UNIT;
 
 /// Of which shape's frame a pair keeps its separating axis.
 #[derive(Clone, Copy)]
-pub(crate) enum AxisFrame<'a> {
+pub(super) enum AxisFrame<'a> {
     /// The kernels' first shape.
     First,
     /// Their second shape, which is there in the frame of the first.
@@ -66,31 +66,99 @@ impl<'a> AxisFrame<'a> {
     }
 }
 
-/// Reads what the previous frame left.
-#[inline(always)]
-pub(crate) fn read<M, C>(
-    manifold: &ContactManifold<M, C>,
-    order: PairOrder,
-    frame: AxisFrame<'_>,
-) -> PairMemory {
-    let stored = if order.is_reversed() && !manifold.points.is_empty() {
-        manifold.local_n2
-    } else {
-        manifold.local_n1
-    };
-    let Some(axis) = unit(stored) else {
-        return PairMemory::None;
-    };
-    match deepest(&manifold.points) {
-        None => {
-            let n2 = manifold.local_n2;
-            // Casts saturate, and NaN becomes 0: any vector is some pair of vertices.
-            PairMemory::Axis(frame.to_kernel(axis), [n2.x as u32, n2.y as u32])
+/// A manifold as the kernels see it: in their order of the shapes, whose rounded borders are taken off.
+pub(super) struct KernelManifold<'a, M, C> {
+    pub(super) manifold: &'a mut ContactManifold<M, C>,
+    pub(super) order: PairOrder,
+    pub(super) border_radii: [f64; 2],
+    frame: AxisFrame<'a>,
+}
+
+impl<'a, M, C> KernelManifold<'a, M, C> {
+    #[inline(always)]
+    pub fn new<B>(
+        manifold: &'a mut ContactManifold<M, C>,
+        pair: &Pair<'_, B>,
+        frame: AxisFrame<'a>,
+    ) -> Self {
+        Self {
+            manifold,
+            order: pair.order,
+            border_radii: pair.border_radii,
+            frame,
         }
-        Some(point) => match (unpack(point.fid1), unpack(point.fid2)) {
-            (Some(f1), Some(f2)) => PairMemory::Contact(axis, order.to_kernel([f1, f2])),
-            _ => PairMemory::Axis(axis, [0, 0]),
-        },
+    }
+
+    /// Where the manifold is: mostly where it was in the frame before.
+    #[inline]
+    pub fn key(&self) -> u64 {
+        (&raw const *self.manifold).addr() as u64
+    }
+
+    /// What the previous frame left.
+    #[inline(always)]
+    pub fn memory(&self) -> PairMemory {
+        let (manifold, order) = (&*self.manifold, self.order);
+        let stored = if order.is_reversed() && !manifold.points.is_empty() {
+            manifold.local_n2
+        } else {
+            manifold.local_n1
+        };
+        let Some(axis) = unit(stored) else {
+            return PairMemory::None;
+        };
+        match deepest(&manifold.points) {
+            None => {
+                let n2 = manifold.local_n2;
+                // Casts saturate, and NaN becomes 0: any vector is some pair of vertices.
+                PairMemory::Axis(self.frame.to_kernel(axis), [n2.x as u32, n2.y as u32])
+            }
+            Some(point) => match (unpack(point.fid1), unpack(point.fid2)) {
+                (Some(f1), Some(f2)) => PairMemory::Contact(axis, order.to_kernel([f1, f2])),
+                _ => PairMemory::Axis(axis, [0, 0]),
+            },
+        }
+    }
+
+    /// Leaves nothing to a pair that is known to be apart without it: where to begin next is not worth
+    /// a root and a division.
+    #[inline(always)]
+    pub fn forget(&mut self) {
+        self.manifold.points.clear();
+        self.manifold.local_n1 = Vec3::ZERO;
+    }
+
+    /// Leaves an axis and extreme vertices in a manifold without points.
+    #[inline(always)]
+    pub fn set_axis(&mut self, axis: DVec3, vertices: [VertexId; 2]) {
+        self.manifold.points.clear();
+        self.manifold.local_n1 = self.frame.to_stored(axis).as_vec3();
+        // Of f32 whole numbers up to 2^24 are exact.
+        self.manifold.local_n2 = Vec3::new(vertices[0] as f32, vertices[1] as f32, 0.0);
+    }
+
+    /// The contact normal in f32, as both shapes see it, outwards.
+    #[inline(always)]
+    pub fn set_normals(&mut self, normals: [Vec3; 2]) {
+        [self.manifold.local_n1, self.manifold.local_n2] = self.order.to_caller(normals);
+    }
+
+    /// Runs a routine of parry's. These keep a separating axis in the frame of the manifold's first shape,
+    /// as one from it to the second, which is turned by `rotation` in that frame.
+    pub fn with_parry_axis(
+        &mut self,
+        rotation: Rotation,
+        update: impl FnOnce(&mut ContactManifold<M, C>),
+    ) {
+        self.turn_axis(rotation);
+        update(self.manifold);
+        self.turn_axis(rotation.inverse());
+    }
+
+    fn turn_axis(&mut self, rotation: Rotation) {
+        if self.order.is_reversed() && self.manifold.points.is_empty() {
+            self.manifold.local_n1 = -(rotation * self.manifold.local_n1);
+        }
     }
 }
 
@@ -103,59 +171,6 @@ fn deepest<C>(contacts: &[TrackedContact<C>]) -> Option<&TrackedContact<C>> {
         }
     }
     Some(deepest)
-}
-
-/// Leaves nothing to a pair that is known to be apart without it: where to begin next is not worth
-/// a root and a division.
-#[inline(always)]
-pub(crate) fn forget<M, C>(manifold: &mut ContactManifold<M, C>) {
-    manifold.points.clear();
-    manifold.local_n1 = Vec3::ZERO;
-}
-
-/// Leaves a separating axis in a manifold without points.
-#[inline(always)]
-pub(crate) fn set_axis<M, C>(
-    manifold: &mut ContactManifold<M, C>,
-    apart: &SeparatingAxis,
-    frame: AxisFrame<'_>,
-) {
-    manifold.points.clear();
-    manifold.local_n1 = frame.to_stored(apart.axis).as_vec3();
-    manifold.local_n2 = as_vector(apart.ids);
-}
-
-/// Of f32 whole numbers up to 2^24 are exact.
-#[inline]
-fn as_vector(ids: [VertexId; 2]) -> Vec3 {
-    Vec3::new(ids[0] as f32, ids[1] as f32, 0.0)
-}
-
-/// Parry's routines keep a separating axis in the frame of the manifold's first shape, as one from
-/// it to the second: from ours to theirs by the `rotation` of the second in that frame, and back by its
-/// inverse.
-pub(crate) fn convert_parry_axis<M, C>(
-    manifold: &mut ContactManifold<M, C>,
-    order: PairOrder,
-    rotation: Rotation,
-) {
-    if order.is_reversed() && manifold.points.is_empty() {
-        manifold.local_n1 = -(rotation * manifold.local_n1);
-    }
-}
-
-/// Leaves a contact that was discarded, as a place for the next query to start from.
-pub(crate) fn set_hint<A: Polytope, B: Polytope, M, C>(
-    manifold: &mut ContactManifold<M, C>,
-    near: &Proximity,
-    cso: &Cso<'_, A, B>,
-) {
-    let start = SeparatingAxis {
-        axis: near.normal,
-        separation: near.signed_distance,
-        ids: query::vertices(cso, near.features),
-    };
-    set_axis(manifold, &start, AxisFrame::of(cso));
 }
 
 /// A vector that is a unit vector up to rounding, or nothing. (Separations along it are then right
@@ -174,7 +189,7 @@ const FACE: u32 = 0b11 << 30;
 
 /// As parry packs feature ids; its own constructors are not inlined across crates.
 #[inline]
-pub(crate) fn pack(feature: Feature) -> PackedFeatureId {
+pub(super) fn pack(feature: Feature) -> PackedFeatureId {
     PackedFeatureId(match feature {
         Feature::Vertex(v) => VERTEX | v,
         Feature::Edge(e) => EDGE | e,
@@ -186,7 +201,7 @@ pub(crate) fn pack(feature: Feature) -> PackedFeatureId {
 /// by the packed features of both shapes. A vertex that moves on from one face to the next stays what it
 /// is.
 #[inline(always)]
-pub(crate) fn feature_keys([a, b]: [u32x4; 2]) -> [u32x4; 2] {
+pub(super) fn feature_keys([a, b]: [u32x4; 2]) -> [u32x4; 2] {
     let [kind, face] = [u32x4::splat(KIND), u32x4::splat(FACE)];
     let vertex_and_face = ((a ^ b) & kind).simd_eq(u32x4::splat(VERTEX ^ FACE));
     map_pair([a, b], |id| {

@@ -7,7 +7,7 @@ use parry3d::query::Contact;
 use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
 use crate::pose::RelativePose;
-use crate::query::Proximity;
+use crate::query::{Proximity, SeparatingAxis, Sink};
 
 /// The nearest points of a pair, its rounded borders accounted for. Normals and points are in
 /// their own shapes' frames.
@@ -56,5 +56,30 @@ impl<'a> KernelFrame<'a> {
             normals: self.order.to_caller(normals),
             points: self.order.to_caller(points),
         }
+    }
+}
+
+/// Keeps the nearest points of shapes that are near each other, without memory of the pair.
+pub(crate) struct NearestPoints<'a> {
+    frame: KernelFrame<'a>,
+    pub nearest: Option<CallerProximity>,
+}
+
+impl<'a> NearestPoints<'a> {
+    pub fn new<B>(pair: &Pair<'_, B>, pose: &'a RelativePose) -> Self {
+        Self {
+            frame: KernelFrame::new(pair, pose),
+            nearest: None,
+        }
+    }
+}
+
+impl Sink for NearestPoints<'_> {
+    fn spheres_apart(&mut self) {}
+
+    fn separated(&mut self, _: &SeparatingAxis) {}
+
+    fn near(&mut self, near: &Proximity) {
+        self.nearest = Some(CallerProximity::of_proximity(near, &self.frame));
     }
 }

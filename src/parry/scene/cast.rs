@@ -119,13 +119,8 @@ impl Cast<'_> {
         frame: &KernelFrame<'_>,
         workspace: &mut Workspace,
     ) -> Option<Option<ShapeCastHit>> {
-        let mut query = Query {
-            cso,
-            max_distance: f64::INFINITY,
-            polytope_cache: None,
-            scratch: &mut workspace.epa,
-            cost: &mut Cost::default(),
-        };
+        let mut cost = Cost::default();
+        let mut query = Query::new(cso, f64::INFINITY, &mut workspace.epa, &mut cost);
         let Answer::Near(near) = query.run(&PairMemory::None)?.0 else {
             return Some(None);
         };

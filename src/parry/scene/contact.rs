@@ -8,11 +8,11 @@ use crate::epa;
 use crate::parry::convert::HalfSpace;
 use crate::parry::pair::{self, Pair, PairVisitor};
 use crate::parry::scaled;
-use crate::parry::scene::caller::{CallerProximity, KernelFrame};
+use crate::parry::scene::caller::{KernelFrame, NearestPoints};
 use crate::parry::scene::separation::{Separation, SeparationQuery, over_half_space};
 use crate::parry::workspace::Workspace;
 use crate::pose::ValidPose;
-use crate::query::{Answer, PairMemory, Query};
+use crate::query::{Full, Query};
 use crate::stats::Cost;
 use crate::support::{Polytope, Support};
 use crate::tolerance::GJK_CURVED_GAP;
@@ -59,21 +59,11 @@ impl PairVisitor for ContactQuery<'_> {
     ) -> Option<Self::Answer> {
         let pose = pair.pose(ValidPose::new(self.pos12)?);
         let cso = pair.cso(&pose);
-        let (answer, _) = Query {
-            cso: &cso,
-            max_distance: pair.core_distance(self.prediction, cso.size()),
-            polytope_cache: None,
-            scratch: &mut workspace.epa,
-            cost: &mut Cost::default(),
-        }
-        .run(&PairMemory::None)?;
-        Some(match answer {
-            Answer::Separated(_) => None,
-            Answer::Near(near) => {
-                let frame = KernelFrame::new(pair, &pose);
-                Some(CallerProximity::of_proximity(&near, &frame).contact())
-            }
-        })
+        let max_distance = pair.core_distance(self.prediction, cso.size());
+        let mut sink = NearestPoints::new(pair, &pose);
+        Query::new(&cso, max_distance, &mut workspace.epa, &mut Cost::default())
+            .run_into(Full, &mut sink)?;
+        Some(sink.nearest.map(|near| near.contact()))
     }
 
     /// How deep they overlap is parry's to say. Where they only touch it may not know.

@@ -7,18 +7,15 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::ClosestPoints;
 use parry3d::shape::{PolygonalFeatureMap, Shape};
 
-use crate::epa;
-use crate::gjk::{self, Outcome};
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space;
 use crate::parry::pair::{self, Pair, PairVisitor};
-use crate::parry::scene::caller::{CallerProximity, KernelFrame};
+use crate::parry::scene::caller::{CallerProximity, NearestPoints};
 use crate::parry::workspace::Workspace;
 use crate::pose::ValidPose;
-use crate::query::PairMemory;
-use crate::simplex::Preferred;
+use crate::query::{Distance, Query};
 use crate::stats::Cost;
-use crate::support::{CsoVertex, Polytope, Support};
+use crate::support::{Polytope, Support};
 use crate::tolerance::{GJK_CURVED_GAP, GJK_GAP_OF_SIZE};
 
 /// Whether two shapes touch or overlap. `None`, here and below: not a pair for us.
@@ -102,38 +99,17 @@ impl SeparationQuery<'_> {
     ) -> Option<Separation> {
         let pose = pair.pose(ValidPose::new(self.pos12)?);
         let cso = pair.cso(&pose);
-        let cost = &mut Cost::default();
-        let size = cso.size();
         // Within its gap GJK does not know: there, too, they touch, for all queries.
-        let max_distance = pair.core_distance(self.max_distance, size) + gap * size;
-        if cso.are_spheres_apart(max_distance) {
-            return Some(Separation::Beyond);
-        }
-        let axis = cso.towards_origin();
-        let vertex = match gjk::test_axis(&cso, axis, cso.start_vertices(axis), max_distance, cost)
-        {
-            Ok(_) => return Some(Separation::Beyond),
-            Err(vertex) => vertex,
-        };
-        let outcome =
-            gjk::distance_within::<Preferred, _, _>(&cso, &[vertex], max_distance, gap, cost);
-        let (closest, normal, distance) = match outcome {
-            Outcome::Separated(_) => return Some(Separation::Beyond),
-            Outcome::Overlapping(_) => return Some(Separation::Overlapping),
-            Outcome::Disjoint(closest) => (closest, closest.normal, closest.distance),
-            // As `contact` does.
-            Outcome::Unsure(closest) => {
-                let seeds: Vec<CsoVertex> = closest.simplex.vertices().copied().collect();
-                let depth = epa::penetration(&cso, &seeds, &mut workspace.epa, cost)?;
-                (closest, depth.normal, -depth.depth)
-            }
-        };
-        if distance > max_distance {
-            return Some(Separation::Beyond);
-        }
-        let near =
-            KernelFrame::new(pair, &pose).near(normal, [closest.on_1, closest.on_2], distance);
-        Some(Separation::of(near, pair.touching(size) + gap * size))
+        let slack = gap * cso.size();
+        let max_distance = pair.core_distance(self.max_distance, cso.size()) + slack;
+        let mut sink = NearestPoints::new(pair, &pose);
+        let found = Query::new(&cso, max_distance, &mut workspace.epa, &mut Cost::default())
+            .run_into(Distance { gap }, &mut sink);
+        Some(match (found, sink.nearest) {
+            (None, _) => Separation::Overlapping,
+            (_, None) => Separation::Beyond,
+            (_, Some(near)) => Separation::of(near, pair.touching(cso.size()) + slack),
+        })
     }
 }
 
@@ -168,14 +144,11 @@ impl PairVisitor for SeparationQuery<'_> {
     ) -> Option<Self::Answer> {
         let near = over_half_space(pair, self.pos12, self.max_distance)?;
         let touching = pair.touching(pair.hull.radius());
-        Some(match near {
-            Some(near) => Separation::of(near, touching),
-            None => Separation::Beyond,
-        })
+        Some(near.map_or(Separation::Beyond, |near| Separation::of(near, touching)))
     }
 }
 
-/// Where a hull is deepest in a half-space, or `None` if it is farther away than `max_distance`.
+/// Where a hull is deepest in a half-space; the inner `None` if it is farther away than `max_distance`.
 pub(super) fn over_half_space(
     pair: &Pair<'_, HalfSpace>,
     pos12: &Pose,
@@ -183,10 +156,7 @@ pub(super) fn over_half_space(
 ) -> Option<Option<CallerProximity>> {
     let pose = pair.pose(ValidPose::new(pos12)?);
     let max_distance = pair.core_distance(max_distance, pair.hull.radius());
-    if half_space::is_sphere_apart(pair, &pose, max_distance) {
-        return Some(None);
-    }
-    let deepest = half_space::deepest(pair, &pose, &PairMemory::None, &mut Cost::default());
-    let is_near = deepest.signed_distance <= max_distance;
-    Some(is_near.then(|| CallerProximity::of_proximity(&deepest, &KernelFrame::new(pair, &pose))))
+    let mut sink = NearestPoints::new(pair, &pose);
+    half_space::run_into(pair, &pose, max_distance, &mut sink, &mut Cost::default());
+    Some(sink.nearest)
 }

@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use crate::gjk;
+use crate::gjk::{self, AxisTest};
 use crate::map_pair::map_pair;
 use crate::query::types::{Answer, Feature, Proximity};
 use crate::stats::Cost;
@@ -38,8 +38,8 @@ pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
     let normal = (on_2 - on_1) / distance;
     let start = [ends_1[0], ends_2[0]];
     match gjk::test_axis(cso, normal, start, max_distance, cost) {
-        Ok(apart) => Some(Answer::Separated(apart)),
-        Err(vertex) => {
+        AxisTest::Separating(apart) => Some(Answer::Separated(apart)),
+        AxisTest::Supporting(vertex) => {
             (distance + normal.dot(vertex.w) <= tolerance).then_some(Answer::Near(Proximity {
                 signed_distance: distance,
                 normal,

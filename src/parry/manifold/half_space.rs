@@ -1,0 +1,42 @@
+//! The contacts of a hull with a half-space.
+
+use super::kept::Present;
+use super::normals::Normals;
+use super::record::KernelManifold;
+use super::sink::UpdateContacts;
+use crate::hull::Hull;
+use crate::manifold::{self, ClipScratch};
+use crate::pose::RelativePose;
+use crate::query::Proximity;
+use crate::support::Support;
+
+pub(super) struct HalfSpaceContacts<'a> {
+    pub hull: &'a Hull,
+    pub pose: &'a RelativePose,
+    pub max_distance: f64,
+    pub scratch: &'a mut ClipScratch,
+}
+
+impl UpdateContacts for HalfSpaceContacts<'_> {
+    #[inline(always)]
+    fn update_contacts<M, C: Default + Copy>(
+        &mut self,
+        manifold: &mut KernelManifold<'_, M, C>,
+        near: &Proximity,
+    ) -> bool {
+        let (hull, pose) = (self.hull, self.pose);
+        let normals = Normals::of(near, pose);
+        let is_kept = manifold.keep_contacts(&Present {
+            pose,
+            normals: &normals,
+            signed_distance: near.signed_distance,
+            radius: hull.radius(),
+        });
+        if !is_kept {
+            let contacts =
+                manifold::half_space_contacts(hull, pose, near, self.max_distance, self.scratch);
+            manifold.set_contacts(normals.rounded, &contacts);
+        }
+        is_kept
+    }
+}

@@ -1,0 +1,308 @@
+//! The order of the stages, written once for all shapes and all questions.
+
+use glam::DVec3;
+
+use super::Query;
+use super::certificate::verdict::Verdict;
+use super::gauss_map;
+use super::types::{Answer, Feature, PairMemory, Proximity};
+use crate::gjk::{self, AxisTest, SeparatingAxis};
+use crate::stats::Stage;
+use crate::support::{CsoVertex, Polytope, Support, VertexId};
+use crate::tuning::TILT;
+
+/// Whether a query goes on from a previous frame: what GJK and EPA count as.
+#[derive(Clone, Copy)]
+pub(crate) enum Start {
+    Warm,
+    Cold,
+}
+
+impl Start {
+    pub(super) fn gjk(self) -> Stage {
+        match self {
+            Self::Warm => Stage::WarmGjk,
+            Self::Cold => Stage::ColdGjk,
+        }
+    }
+
+    pub(super) fn epa(self) -> Stage {
+        match self {
+            Self::Warm => Stage::WarmEpa,
+            Self::Cold => Stage::ColdEpa,
+        }
+    }
+}
+
+/// Takes the answer of a query where it is found, by reference: copying an answer stalls on store
+/// forwarding.
+pub(crate) trait Sink {
+    /// What is remembered of the pair. It is read only if the bounding spheres are within reach.
+    fn memory(&self) -> PairMemory {
+        PairMemory::None
+    }
+
+    /// The bounding spheres are too far apart. No axis was computed.
+    fn spheres_apart(&mut self);
+
+    /// The shapes are farther apart than was asked about.
+    fn separated(&mut self, axis: &SeparatingAxis);
+
+    /// The shapes are this near, or overlap.
+    fn near(&mut self, proximity: &Proximity);
+}
+
+/// What a search found, and the stage that found it.
+pub(super) type Found = Option<(Answer, Stage)>;
+
+/// How a query goes on where neither the bounding spheres nor a remembered axis separates the shapes.
+pub(crate) trait Strategy<A, B>: Copy {
+    /// Re-evaluates features that were in contact. Shapes without faces have none.
+    #[inline(always)]
+    fn certify(self, query: &mut Query<'_, '_, A, B>, features: [Feature; 2]) -> Verdict {
+        let _ = (query, features);
+        Verdict::Degenerate
+    }
+
+    /// Goes on from features on which the `verdict` is not that they are still the answer.
+    fn start_from_features(
+        self,
+        query: &mut Query<'_, '_, A, B>,
+        normal: DVec3,
+        features: [Feature; 2],
+        verdict: &Verdict,
+    ) -> Found;
+
+    /// Goes on from an axis that does not separate, along which `vertex` is too near.
+    fn start_from_axis(
+        self,
+        query: &mut Query<'_, '_, A, B>,
+        axis: DVec3,
+        vertex: CsoVertex,
+        start: Start,
+    ) -> Found;
+}
+
+/// Every stage. There is no answer if the shapes have no volume between them, or are not finite.
+#[derive(Clone, Copy)]
+pub(crate) struct Full;
+
+impl<A: Polytope, B: Polytope> Strategy<A, B> for Full {
+    #[inline(always)]
+    fn certify(self, query: &mut Query<'_, '_, A, B>, features: [Feature; 2]) -> Verdict {
+        query.certify(features)
+    }
+
+    fn start_from_features(
+        self,
+        query: &mut Query<'_, '_, A, B>,
+        normal: DVec3,
+        features: [Feature; 2],
+        verdict: &Verdict,
+    ) -> Found {
+        query.start_walk_from_features(normal, features, verdict)
+    }
+
+    /// Often an axis separates that is tilted away from where the shapes come too near; else the facets
+    /// around are the next to look at.
+    fn start_from_axis(
+        self,
+        query: &mut Query<'_, '_, A, B>,
+        axis: DVec3,
+        vertex: CsoVertex,
+        start: Start,
+    ) -> Found {
+        if query.skips_facet_walk() {
+            return query.run_gjk(&[vertex], start);
+        }
+        let tilted = tilted(axis, &vertex);
+        match query.test_axis(tilted, vertex.ids) {
+            AxisTest::Separating(apart) => Some((Answer::Separated(apart), Stage::Axis)),
+            AxisTest::Supporting(second) => {
+                match gauss_map::facet_at_vertex(query.cso, &second, tilted) {
+                    Some(features) => query.walk_from(tilted, features, start),
+                    None => query.run_gjk(&[vertex, second], start),
+                }
+            }
+        }
+    }
+}
+
+/// GJK after the axis, with bounds that need not differ by less than this share of the pair's size.
+/// There is no answer if the shapes overlap.
+#[derive(Clone, Copy)]
+pub(crate) struct Distance {
+    pub gap: f64,
+}
+
+impl<A: Support, B: Support> Strategy<A, B> for Distance {
+    fn start_from_features(
+        self,
+        query: &mut Query<'_, '_, A, B>,
+        normal: DVec3,
+        _: [Feature; 2],
+        _: &Verdict,
+    ) -> Found {
+        query.search_along(self, normal)
+    }
+
+    fn start_from_axis(
+        self,
+        query: &mut Query<'_, '_, A, B>,
+        _: DVec3,
+        vertex: CsoVertex,
+        start: Start,
+    ) -> Found {
+        query.measure(vertex, self.gap, start)
+    }
+}
+
+/// A tilted axis after the axis itself. There is no answer if neither separates.
+#[derive(Clone, Copy)]
+pub(crate) struct AxisOnly;
+
+impl<A: Support, B: Support> Strategy<A, B> for AxisOnly {
+    fn start_from_features(
+        self,
+        query: &mut Query<'_, '_, A, B>,
+        normal: DVec3,
+        _: [Feature; 2],
+        _: &Verdict,
+    ) -> Found {
+        query.search_along(self, normal)
+    }
+
+    fn start_from_axis(
+        self,
+        query: &mut Query<'_, '_, A, B>,
+        axis: DVec3,
+        vertex: CsoVertex,
+        _: Start,
+    ) -> Found {
+        match query.test_axis(tilted(axis, &vertex), vertex.ids) {
+            AxisTest::Separating(apart) => Some((Answer::Separated(apart), Stage::Axis)),
+            AxisTest::Supporting(_) => None,
+        }
+    }
+}
+
+/// An axis tilted away from where the shapes come too near along it.
+#[inline]
+fn tilted(axis: DVec3, too_near: &CsoVertex) -> DVec3 {
+    let sideways = too_near.w - axis * axis.dot(too_near.w);
+    (axis - sideways.normalize_or_zero() * TILT).normalize()
+}
+
+impl<A: Support, B: Support> Query<'_, '_, A, B> {
+    /// Hands the answer to `sink`, and returns the stage that found it. `None` if the strategy finds none.
+    // perf: in calls the sink's answers would go through memory, which pairs that are apart notice.
+    #[inline(always)]
+    pub(crate) fn run_into(
+        &mut self,
+        strategy: impl Strategy<A, B>,
+        sink: &mut impl Sink,
+    ) -> Option<Stage> {
+        // Half of the pairs that are apart, or more, end here: before anything else is done for them.
+        if self.cso.are_spheres_apart(self.max_distance) {
+            sink.spheres_apart();
+            return Some(Stage::BoundingSpheres);
+        }
+        let found = match sink.memory() {
+            PairMemory::None => self.search_along(strategy, self.cso.towards_origin()),
+            PairMemory::Axis(axis, ids) => match self.test_axis(axis, ids) {
+                AxisTest::Separating(apart) => {
+                    sink.separated(&apart);
+                    return Some(Stage::Axis);
+                }
+                AxisTest::Supporting(vertex) => {
+                    strategy.start_from_axis(self, axis, vertex, Start::Warm)
+                }
+            },
+            PairMemory::Contact(normal, features) => {
+                let verdict = strategy.certify(self, features);
+                if let Verdict::Certified(near) = &verdict {
+                    sink.near(near);
+                    return Some(Stage::Feature);
+                }
+                strategy.start_from_features(self, normal, features, &verdict)
+            }
+        };
+        let (answer, stage) = found.as_ref()?;
+        match answer {
+            Answer::Separated(apart) => sink.separated(apart),
+            Answer::Near(near) => sink.near(near),
+        }
+        Some(*stage)
+    }
+
+    /// Without memory, along an axis: mostly the line of centres.
+    fn search_along(&mut self, strategy: impl Strategy<A, B>, axis: DVec3) -> Found {
+        match self.test_axis(axis, self.cso.start_vertices(axis)) {
+            AxisTest::Separating(apart) => Some((Answer::Separated(apart), Stage::Axis)),
+            AxisTest::Supporting(vertex) => {
+                strategy.start_from_axis(self, axis, vertex, Start::Cold)
+            }
+        }
+    }
+
+    /// Whether an axis separates. `ids` may be those of a memory, of any shapes.
+    #[inline(always)]
+    fn test_axis(&mut self, axis: DVec3, ids: [VertexId; 2]) -> AxisTest {
+        let start = [
+            self.cso.shape_1.clamp_vertex(ids[0]),
+            self.cso.shape_2.clamp_vertex(ids[1]),
+        ];
+        gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost)
+    }
+}
+
+impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
+    /// Answers from `memory` where that is possible, cold otherwise. `None` only if the shapes
+    /// have no volume between them or are not finite.
+    pub fn run(&mut self, memory: &PairMemory) -> Option<(Answer, Stage)> {
+        let mut sink = Collect {
+            memory,
+            answer: None,
+        };
+        let stage = self.run_into(Full, &mut sink)?;
+        let answer = sink
+            .answer
+            .unwrap_or_else(|| Answer::Separated(self.line_of_centers(memory)));
+        Some((answer, stage))
+    }
+
+    /// The axis of shapes whose bounding spheres are apart. What was remembered of their vertices stays.
+    fn line_of_centers(&self, memory: &PairMemory) -> SeparatingAxis {
+        let axis = self.cso.towards_origin();
+        SeparatingAxis {
+            axis,
+            separation: self.cso.center().length() - self.cso.size(),
+            ids: match *memory {
+                PairMemory::Axis(_, ids) => ids,
+                _ => self.cso.start_vertices(axis),
+            },
+        }
+    }
+}
+
+/// Keeps the answer, unless the bounding spheres are apart.
+struct Collect<'a> {
+    memory: &'a PairMemory,
+    answer: Option<Answer>,
+}
+
+impl Sink for Collect<'_> {
+    fn memory(&self) -> PairMemory {
+        *self.memory
+    }
+
+    fn spheres_apart(&mut self) {}
+
+    fn separated(&mut self, axis: &SeparatingAxis) {
+        self.answer = Some(Answer::Separated(*axis));
+    }
+
+    fn near(&mut self, proximity: &Proximity) {
+        self.answer = Some(Answer::Near(*proximity));
+    }
+}
