@@ -6,11 +6,11 @@ use bevy_ecs::change_detection::Tick;
 use bevy_ecs::entity::{Entity, EntityHashMap};
 use bevy_ecs::prelude::Resource;
 use rapier3d::prelude::{
-    self as rapier, ActiveEvents, ColliderHandle, NarrowPhase, PhysicsWorld, RigidBodyHandle,
+    self as rapier, ActiveEvents, ColliderBuilder, ColliderHandle, NarrowPhase, PhysicsWorld,
+    RigidBodyBuilder, RigidBodyHandle,
 };
 
 use super::collision::{CollisionEvent, CollisionRecorder};
-use super::components::{Collider, PhysicsTransform, RigidBody, Velocity};
 use crate::IsaGjkDispatcher;
 use crate::stats::Stats;
 
@@ -134,20 +134,8 @@ impl PhysicsContext {
     }
 
     /// Inserts the body of an entity, or makes the one it has like a new one.
-    pub(super) fn set_body(
-        &mut self,
-        entity: Entity,
-        body: &RigidBody,
-        transform: PhysicsTransform,
-        velocity: Velocity,
-    ) {
-        let built = body
-            .0
-            .clone()
-            .pose(transform.into())
-            .linvel(velocity.linear)
-            .angvel(velocity.angular)
-            .build();
+    pub(super) fn set_body(&mut self, entity: Entity, body: RigidBodyBuilder) {
+        let built = body.build();
         if let Some(known) = self.body_mut(entity) {
             known.copy_from(&built);
         } else {
@@ -162,19 +150,18 @@ impl PhysicsContext {
     }
 
     /// Inserts the collider of an entity with a body, or makes the one it has like a new one.
-    pub(super) fn set_collider(&mut self, entity: Entity, collider: &Collider) {
+    pub(super) fn set_collider(&mut self, entity: Entity, collider: &ColliderBuilder) {
         let Some(handles) = self.entities.get_mut(&entity) else {
             return;
         };
-        let builder = &collider.0;
-        let events = builder.active_events | ActiveEvents::COLLISION_EVENTS;
-        let built = builder.clone().active_events(events).build();
+        let events = collider.active_events | ActiveEvents::COLLISION_EVENTS;
+        let built = collider.clone().active_events(events).build();
         let known = handles
             .collider
             .and_then(|c| self.world.colliders.get_mut(c));
         if let Some(known) = known {
             known.copy_from(&built);
-            known.set_position_wrt_parent(builder.position);
+            known.set_position_wrt_parent(collider.position);
             self.world.wake_up(handles.body, true);
         } else if self.world.bodies.contains(handles.body) {
             let handle = self.world.insert_collider(built, Some(handles.body));

@@ -137,14 +137,16 @@ fn sync(mut context: ResMut<PhysicsContext>, bodies: Query<BodyQuery<'_>, Anythi
     let context = &mut *context;
     for (entity, body, collider, transform, velocity) in &bodies {
         if body.is_changed() {
-            context.set_body(entity, &body, *transform, *velocity);
+            let builder = body.0.clone().pose((*transform).into());
+            let moving = builder.linvel(velocity.linear).angvel(velocity.angular);
+            context.set_body(entity, moving);
         } else {
             apply_user_changes(context, entity, &transform, &velocity);
         }
         if let Some(collider) = collider
             && (collider.is_changed() || body.is_changed() && context.collider(entity).is_none())
         {
-            context.set_collider(entity, &collider);
+            context.set_collider(entity, &collider.0);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! From parry's shapes to polytopes that the kernels can work on.
 
 use parry3d::math::{Pose, Real};
+use parry3d::query::Unsupported;
 use parry3d::shape::{PolygonalFeatureMap, Shape, ShapeType, TypedShape};
 
 use crate::hull::Hull;
@@ -60,9 +61,15 @@ impl<'a, B> Pair<'a, B> {
     }
 }
 
+/// A pose that the kernels can work with.
+#[inline(always)]
+pub(crate) fn valid_pose(pos12: &Pose) -> Result<ValidPose<'_>, Unsupported> {
+    ValidPose::new(pos12).ok_or(Unsupported)
+}
+
 /// Something to do with a pair.
 pub(crate) trait PairVisitor: Sized {
-    /// What comes of it; with `None` the pair is left to parry.
+    /// What comes of it; what is [`Unsupported`] is left to parry.
     type Answer;
 
     /// Whether it is to be asked about half-spaces.
@@ -76,16 +83,16 @@ pub(crate) trait PairVisitor: Sized {
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,
-    ) -> Option<Self::Answer>;
+    ) -> Result<Self::Answer, Unsupported>;
 
     /// The other shape is a half-space.
     fn visit_half_space(
         &mut self,
         pair: &Pair<'_, HalfSpace>,
         workspace: &mut Workspace,
-    ) -> Option<Self::Answer> {
+    ) -> Result<Self::Answer, Unsupported> {
         let _ = (pair, workspace);
-        None
+        Err(Unsupported)
     }
 
     /// The other shape is a cylinder or a cone, which has no faces for our kernels; for parry's routines
@@ -95,19 +102,19 @@ pub(crate) trait PairVisitor: Sized {
         pair: &Pair<'_, B>,
         features: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
-    ) -> Option<Self::Answer> {
+    ) -> Result<Self::Answer, Unsupported> {
         let _ = (pair, features, workspace);
-        None
+        Err(Unsupported)
     }
 }
 
-/// Visits the pair if one of its shapes is a hull and the other one known; else `None`.
+/// Visits the pair if one of its shapes is a hull and the other one known.
 #[inline]
 pub(crate) fn visit<V: PairVisitor>(
     shape_1: &dyn Shape,
     shape_2: &dyn Shape,
     visitor: V,
-) -> Option<V::Answer> {
+) -> Result<V::Answer, Unsupported> {
     visit_operands(
         Operand::alone(shape_1),
         Operand::alone(shape_2),
@@ -124,7 +131,7 @@ pub(crate) fn visit_operands<'a, 'b, V: PairVisitor>(
     mut operand_2: Operand<'b, impl Find<'b>>,
     epoch: Option<Epoch>,
     mut visitor: V,
-) -> Option<V::Answer> {
+) -> Result<V::Answer, Unsupported> {
     match [operand_1.is_hull(), operand_2.is_hull()] {
         [true, true] => {
             ThreadWorkspace::with(
@@ -132,16 +139,16 @@ pub(crate) fn visit_operands<'a, 'b, V: PairVisitor>(
                      hulls, workspace, ..
                  }| {
                     hulls.begin(epoch);
-                    let first = operand_1.prepare(hulls)?;
+                    let first = operand_1.prepare(hulls).ok_or(Unsupported)?;
                     // Two colliders with one shape, which many worlds are full of, need one proof.
                     let second = if operand_1.is_same(&operand_2) {
                         first
                     } else {
-                        operand_2.prepare(hulls)?
+                        operand_2.prepare(hulls).ok_or(Unsupported)?
                     };
                     let pair = Pair {
-                        hull: first.hull(hulls)?,
-                        other: second.hull(hulls)?,
+                        hull: first.hull(hulls).ok_or(Unsupported)?,
+                        other: second.hull(hulls).ok_or(Unsupported)?,
                         border_radii: [first.border_radius, second.border_radius],
                         order: PairOrder::Given,
                     };
@@ -153,7 +160,7 @@ pub(crate) fn visit_operands<'a, 'b, V: PairVisitor>(
             .visit(operand_2.shape, &mut visitor),
         [false, true] => HullOperand::new(&mut operand_2, epoch, PairOrder::Reversed)
             .visit(operand_1.shape, &mut visitor),
-        [false, false] => None,
+        [false, false] => Err(Unsupported),
     }
 }
 
@@ -192,44 +199,49 @@ impl<'s, 'a, F: Find<'a>> HullOperand<'s, 'a, F> {
         }
     }
 
-    /// Visits the hull and another shape; `None` if that is not known, or too flat or too small.
+    /// Visits the hull and another shape, if that is known, and neither too flat nor too small.
     #[inline(never)]
-    fn visit<V: PairVisitor>(&mut self, other: &dyn Shape, visitor: &mut V) -> Option<V::Answer> {
+    fn visit<V: PairVisitor>(
+        &mut self,
+        other: &dyn Shape,
+        visitor: &mut V,
+    ) -> Result<V::Answer, Unsupported> {
         // What such a shape shows as its typed shape may be a likeness only.
         if other.shape_type() == ShapeType::Custom {
-            return None;
+            return Err(Unsupported);
         }
         match other.as_typed_shape() {
             TypedShape::Cuboid(cuboid) => {
                 let cuboid = convert::cuboid(cuboid);
-                self.polytope(cuboid.as_ref()?, 0.0, visitor)
+                self.polytope(cuboid.as_ref().ok_or(Unsupported)?, 0.0, visitor)
             }
             TypedShape::RoundCuboid(round) => {
-                let cuboid = convert::cuboid(&round.inner_shape)?;
+                let cuboid = convert::cuboid(&round.inner_shape).ok_or(Unsupported)?;
                 self.polytope(&cuboid, round.border_radius, visitor)
             }
             TypedShape::Triangle(triangle) => {
                 let triangle = convert::triangle(triangle);
-                self.polytope(triangle.as_ref()?, 0.0, visitor)
+                self.polytope(triangle.as_ref().ok_or(Unsupported)?, 0.0, visitor)
             }
             TypedShape::RoundTriangle(round) => {
-                let triangle = convert::triangle(&round.inner_shape)?;
+                let triangle = convert::triangle(&round.inner_shape).ok_or(Unsupported)?;
                 self.polytope(&triangle, round.border_radius, visitor)
             }
             TypedShape::Ball(ball) => {
                 let radius = ball.radius;
-                self.polytope(&Ball::new(convert::positive(radius)?), radius, visitor)
+                let ball = Ball::new(convert::positive(radius).ok_or(Unsupported)?);
+                self.polytope(&ball, radius, visitor)
             }
             TypedShape::Capsule(capsule) => {
-                let core = convert::segment(&capsule.segment, capsule.radius)?;
+                let core = convert::segment(&capsule.segment, capsule.radius).ok_or(Unsupported)?;
                 self.polytope(&core, capsule.radius, visitor)
             }
             TypedShape::Segment(segment) => {
-                let segment = convert::segment(segment, 0.0)?;
+                let segment = convert::segment(segment, 0.0).ok_or(Unsupported)?;
                 self.polytope(&segment, 0.0, visitor)
             }
             TypedShape::HalfSpace(half_space) if V::HALF_SPACES => {
-                let half_space = convert::half_space(half_space)?;
+                let half_space = convert::half_space(half_space).ok_or(Unsupported)?;
                 self.with(&half_space, 0.0, |pair, workspace| {
                     visitor.visit_half_space(pair, workspace)
                 })
@@ -242,7 +254,7 @@ impl<'s, 'a, F: Find<'a>> HullOperand<'s, 'a, F> {
             TypedShape::RoundCone(round) if V::CURVED => {
                 self.curved(&round.inner_shape, round.border_radius, visitor)
             }
-            _ => None,
+            _ => Err(Unsupported),
         }
     }
 
@@ -252,7 +264,7 @@ impl<'s, 'a, F: Find<'a>> HullOperand<'s, 'a, F> {
         other: &impl Polytope,
         border_radius: Real,
         visitor: &mut V,
-    ) -> Option<V::Answer> {
+    ) -> Result<V::Answer, Unsupported> {
         self.with(other, border_radius, |pair, workspace| {
             visitor.visit(pair, workspace)
         })
@@ -264,8 +276,9 @@ impl<'s, 'a, F: Find<'a>> HullOperand<'s, 'a, F> {
         other: &(impl CurvedShape + PolygonalFeatureMap),
         border_radius: Real,
         visitor: &mut V,
-    ) -> Option<V::Answer> {
-        self.with(&other.kernel()?, border_radius, |pair, workspace| {
+    ) -> Result<V::Answer, Unsupported> {
+        let kernel = other.kernel().ok_or(Unsupported)?;
+        self.with(&kernel, border_radius, |pair, workspace| {
             visitor.visit_curved(pair, other, workspace)
         })
     }
@@ -276,16 +289,16 @@ impl<'s, 'a, F: Find<'a>> HullOperand<'s, 'a, F> {
         &mut self,
         other: &B,
         border_radius: Real,
-        visit: impl FnOnce(&Pair<'_, B>, &mut Workspace) -> Option<T>,
-    ) -> Option<T> {
+        visit: impl FnOnce(&Pair<'_, B>, &mut Workspace) -> Result<T, Unsupported>,
+    ) -> Result<T, Unsupported> {
         ThreadWorkspace::with(
             |ThreadWorkspace {
                  hulls, workspace, ..
              }| {
                 hulls.begin(self.epoch);
-                let prepared = self.operand.prepare(hulls)?;
+                let prepared = self.operand.prepare(hulls).ok_or(Unsupported)?;
                 let pair = Pair {
-                    hull: prepared.hull(hulls)?,
+                    hull: prepared.hull(hulls).ok_or(Unsupported)?,
                     other,
                     border_radii: [prepared.border_radius, border_radius.into()],
                     order: self.order,

@@ -53,7 +53,7 @@ impl<F> Updater<'_, F> {
             manifold,
             stats: self.stats,
         };
-        if pair::visit_operands(operand_1, operand_2, self.epoch, update).is_some() {
+        if pair::visit_operands(operand_1, operand_2, self.epoch, update).is_ok() {
             return Ok(());
         }
         if has_hull {

@@ -38,7 +38,7 @@ impl Start {
 /// forwarding.
 pub(crate) trait Sink {
     /// What is remembered of the pair. It is read only if the bounding spheres are within reach.
-    fn memory(&self) -> PairMemory {
+    fn memory(&mut self) -> PairMemory {
         PairMemory::None
     }
 
@@ -56,7 +56,7 @@ pub(crate) trait Sink {
 pub(super) type Found = Option<(Answer, Stage)>;
 
 /// How a query goes on where neither the bounding spheres nor a remembered axis separates the shapes.
-pub(crate) trait Strategy<A, B>: Copy {
+pub(crate) trait Strategy<A: Support, B: Support>: Copy {
     /// Re-evaluates features that were in contact. Shapes without faces have none.
     #[inline(always)]
     fn certify(self, query: &mut Query<'_, '_, A, B>, features: [Feature; 2]) -> Verdict {
@@ -71,7 +71,10 @@ pub(crate) trait Strategy<A, B>: Copy {
         normal: DVec3,
         features: [Feature; 2],
         verdict: &Verdict,
-    ) -> Found;
+    ) -> Found {
+        let _ = (features, verdict);
+        query.search_along(self, normal)
+    }
 
     /// Goes on from an axis that does not separate, along which `vertex` is too near.
     fn start_from_axis(
@@ -136,16 +139,6 @@ pub(crate) struct Distance {
 }
 
 impl<A: Support, B: Support> Strategy<A, B> for Distance {
-    fn start_from_features(
-        self,
-        query: &mut Query<'_, '_, A, B>,
-        normal: DVec3,
-        _: [Feature; 2],
-        _: &Verdict,
-    ) -> Found {
-        query.search_along(self, normal)
-    }
-
     fn start_from_axis(
         self,
         query: &mut Query<'_, '_, A, B>,
@@ -162,16 +155,6 @@ impl<A: Support, B: Support> Strategy<A, B> for Distance {
 pub(crate) struct AxisOnly;
 
 impl<A: Support, B: Support> Strategy<A, B> for AxisOnly {
-    fn start_from_features(
-        self,
-        query: &mut Query<'_, '_, A, B>,
-        normal: DVec3,
-        _: [Feature; 2],
-        _: &Verdict,
-    ) -> Found {
-        query.search_along(self, normal)
-    }
-
     fn start_from_axis(
         self,
         query: &mut Query<'_, '_, A, B>,
@@ -292,7 +275,7 @@ struct Collect<'a> {
 }
 
 impl Sink for Collect<'_> {
-    fn memory(&self) -> PairMemory {
+    fn memory(&mut self) -> PairMemory {
         *self.memory
     }
 

@@ -1,5 +1,5 @@
 //! Scene queries against shapes with parts: parry's routines pick the parts, and ask *us* about
-//! them. The order of cases is that of parry's own dispatcher; `None` where it has no such case.
+//! them. The order of cases is that of parry's own dispatcher; where it has no such case the pair is [`Unsupported`].
 //! Negative distances become zero: the routines assert that they are not.
 
 use parry3d::math::{Pose, Real, Vector};
@@ -26,20 +26,20 @@ pub(crate) fn intersection_test(
     pos12: &Pose,
     g1: &dyn Shape,
     g2: &dyn Shape,
-) -> Option<ShapeIntersection> {
+) -> Result<ShapeIntersection, Unsupported> {
     // Parry projects the centre of a ball on the whole shape.
     if [g1, g2].iter().any(|g| g.shape_type() == ShapeType::Ball) {
-        return None;
+        return Err(Unsupported);
     }
     if let Some(c1) = g1.as_composite_shape() {
-        Some(intersection_test_composite_shape_shape(us, pos12, c1, g2))
+        Ok(intersection_test_composite_shape_shape(us, pos12, c1, g2))
     } else if let Some(c2) = g2.as_composite_shape() {
-        Some(intersection_test_shape_composite_shape(us, pos12, g1, c2))
+        Ok(intersection_test_shape_composite_shape(us, pos12, g1, c2))
     } else if let Some(v1) = g1.as_voxels() {
-        Some(intersection_test_voxels_shape(us, pos12, v1, g2))
+        Ok(intersection_test_voxels_shape(us, pos12, v1, g2))
     } else {
-        let v2 = g2.as_voxels()?;
-        Some(intersection_test_shape_voxels(us, pos12, g1, v2))
+        let v2 = g2.as_voxels().ok_or(Unsupported)?;
+        Ok(intersection_test_shape_voxels(us, pos12, g1, v2))
     }
 }
 
@@ -48,12 +48,12 @@ pub(crate) fn distance(
     pos12: &Pose,
     g1: &dyn Shape,
     g2: &dyn Shape,
-) -> Option<ShapeDistance> {
+) -> Result<ShapeDistance, Unsupported> {
     if let Some(c1) = g1.as_composite_shape() {
-        Some(distance_composite_shape_shape(us, pos12, c1, g2))
+        Ok(distance_composite_shape_shape(us, pos12, c1, g2))
     } else {
-        let c2 = g2.as_composite_shape()?;
-        Some(distance_shape_composite_shape(us, pos12, g1, c2))
+        let c2 = g2.as_composite_shape().ok_or(Unsupported)?;
+        Ok(distance_shape_composite_shape(us, pos12, g1, c2))
     }
 }
 
@@ -63,16 +63,16 @@ pub(crate) fn contact(
     g1: &dyn Shape,
     g2: &dyn Shape,
     prediction: Real,
-) -> Option<Option<Contact>> {
+) -> Result<Option<Contact>, Unsupported> {
     let prediction = prediction.max(0.0);
-    Some(if let Some(h1) = g1.as_heightfield() {
+    Ok(if let Some(h1) = g1.as_heightfield() {
         contact_heightfield_shape(us, pos12, h1, g2, prediction)
     } else if let Some(h2) = g2.as_heightfield() {
         contact_shape_heightfield(us, pos12, g1, h2, prediction)
     } else if let Some(c1) = g1.as_composite_shape() {
         contact_composite_shape_shape(us, pos12, c1, g2, prediction)
     } else {
-        let c2 = g2.as_composite_shape()?;
+        let c2 = g2.as_composite_shape().ok_or(Unsupported)?;
         contact_shape_composite_shape(us, pos12, g1, c2, prediction)
     })
 }
@@ -83,11 +83,11 @@ pub(crate) fn closest_points(
     g1: &dyn Shape,
     g2: &dyn Shape,
     max_dist: Real,
-) -> Option<ClosestPoints> {
-    Some(if let Some(c1) = g1.as_composite_shape() {
+) -> Result<ClosestPoints, Unsupported> {
+    Ok(if let Some(c1) = g1.as_composite_shape() {
         closest_points_composite_shape_shape(us, pos12, c1, g2, max_dist)
     } else {
-        let c2 = g2.as_composite_shape()?;
+        let c2 = g2.as_composite_shape().ok_or(Unsupported)?;
         closest_points_shape_composite_shape(us, pos12, g1, c2, max_dist)
     })
 }
@@ -99,28 +99,24 @@ pub(crate) fn cast_shapes(
     g1: &dyn Shape,
     g2: &dyn Shape,
     mut options: ShapeCastOptions,
-) -> Option<Result<Option<ShapeCastHit>, Unsupported>> {
+) -> Result<Option<ShapeCastHit>, Unsupported> {
     options.target_distance = options.target_distance.max(0.0);
     if let Some(h1) = g1.as_heightfield() {
-        return Some(cast_shapes_heightfield_shape(
-            us, pos12, velocity, h1, g2, options,
-        ));
+        return cast_shapes_heightfield_shape(us, pos12, velocity, h1, g2, options);
     }
     if let Some(h2) = g2.as_heightfield() {
-        return Some(cast_shapes_shape_heightfield(
-            us, pos12, velocity, g1, h2, options,
-        ));
+        return cast_shapes_shape_heightfield(us, pos12, velocity, g1, h2, options);
     }
-    Some(Ok(if let Some(c1) = g1.as_composite_shape() {
+    Ok(if let Some(c1) = g1.as_composite_shape() {
         cast_shapes_composite_shape_shape(us, pos12, velocity, c1, g2, options)
     } else if let Some(c2) = g2.as_composite_shape() {
         cast_shapes_shape_composite_shape(us, pos12, velocity, g1, c2, options)
     } else if let Some(v1) = g1.as_voxels() {
         cast_shapes_voxels_shape(us, pos12, velocity, v1, g2, options)
     } else {
-        let v2 = g2.as_voxels()?;
+        let v2 = g2.as_voxels().ok_or(Unsupported)?;
         cast_shapes_shape_voxels(us, pos12, velocity, g1, v2, options)
-    }))
+    })
 }
 
 /// A shape on its way, with rotation.
@@ -137,11 +133,11 @@ pub(crate) fn cast_shapes_nonlinear(
     movers: [MovingShape<'_>; 2],
     [start, end]: [Real; 2],
     stop_at_penetration: bool,
-) -> Option<Option<ShapeCastHit>> {
+) -> Result<Option<ShapeCastHit>, Unsupported> {
     let stop = stop_at_penetration;
     let [m1, m2] = movers.map(|mover| mover.motion);
     let [g1, g2] = movers.map(|mover| mover.shape);
-    Some(
+    Ok(
         if let (Some(s1), Some(s2)) = (g1.as_support_map(), g2.as_support_map()) {
             let mode = if stop {
                 NonlinearShapeCastMode::StopAtPenetration
@@ -158,7 +154,7 @@ pub(crate) fn cast_shapes_nonlinear(
         } else if let Some(v1) = g1.as_voxels() {
             cast_shapes_nonlinear_voxels_shape(us, m1, v1, m2, g2, start, end, stop)
         } else {
-            let v2 = g2.as_voxels()?;
+            let v2 = g2.as_voxels().ok_or(Unsupported)?;
             cast_shapes_nonlinear_shape_voxels(us, m1, g1, m2, v2, start, end, stop)
         },
     )

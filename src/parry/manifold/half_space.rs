@@ -1,6 +1,5 @@
 //! The contacts of a hull with a half-space.
 
-use super::kept::Present;
 use super::normals::Normals;
 use super::record::KernelManifold;
 use super::sink::UpdateContacts;
@@ -26,12 +25,7 @@ impl UpdateContacts for HalfSpaceContacts<'_> {
     ) -> bool {
         let (hull, pose) = (self.hull, self.pose);
         let normals = Normals::of(near, pose);
-        let is_kept = manifold.keep_contacts(&Present {
-            pose,
-            normals: &normals,
-            signed_distance: near.signed_distance,
-            radius: hull.radius(),
-        });
+        let is_kept = manifold.keep_contacts(near, pose, &normals, hull.radius());
         if !is_kept {
             let contacts =
                 manifold::half_space_contacts(hull, pose, near, self.max_distance, self.scratch);

@@ -10,21 +10,20 @@ mod record;
 mod sink;
 
 use parry3d::math::{Pose, Real};
-use parry3d::query::ContactManifold;
+use parry3d::query::{ContactManifold, Unsupported};
 use parry3d::shape::PolygonalFeatureMap;
 
 use crate::parry::constraints::Constraints;
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space as plane;
-use crate::parry::pair::{Pair, PairVisitor};
+use crate::parry::pair::{Pair, PairVisitor, valid_pose};
 use crate::parry::workspace::Workspace;
-use crate::pose::ValidPose;
 use crate::query::{AxisOnly, Full, Query};
 use crate::stats::{Cost, Left, SharedStats};
 use crate::support::{Polytope, Support};
 use half_space::HalfSpaceContacts;
 use polytopes::PolytopeContacts;
-use record::{AxisFrame, KernelManifold};
+use record::AxisFrame;
 use sink::{ManifoldSink, NoContacts};
 
 /// Brings a manifold up to date.
@@ -46,51 +45,63 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
 
     // perf: in a call the pair would go through memory, which small queries notice.
     #[inline(always)]
-    fn visit<B: Polytope>(&mut self, pair: &Pair<'_, B>, workspace: &mut Workspace) -> Option<()> {
-        let pose = pair.pose(ValidPose::new(self.pos12)?);
+    fn visit<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        workspace: &mut Workspace,
+    ) -> Result<(), Unsupported> {
+        let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
         let max_distance = pair.core_distance(self.prediction, cso.size());
-        let manifold = KernelManifold::new(self.manifold, pair, AxisFrame::of(&cso));
         let mut cost = Cost::default();
         let mut query = Query {
             cso: &cso,
             max_distance,
-            polytope_cache: Some((&mut workspace.polytope_cache, manifold.key())),
+            polytope_cache: Some((&mut workspace.polytope_cache, key_of(self.manifold))),
             scratch: &mut workspace.epa,
             cost: &mut cost,
         };
-        let contacts = PolytopeContacts {
-            cso: &cso,
-            max_distance,
-            constraints: self.constraints,
-            pos12: self.pos12,
-            scratch: &mut workspace.clip,
+        let mut sink = ManifoldSink {
+            manifold: &mut *self.manifold,
+            pair,
+            frame: AxisFrame::of(&cso),
+            contacts: PolytopeContacts {
+                cso: &cso,
+                max_distance,
+                constraints: &self.constraints,
+                pos12: self.pos12,
+                scratch: &mut workspace.clip,
+            },
+            is_kept: false,
         };
-        let mut sink = ManifoldSink::new(manifold, contacts);
-        let stage = query.run_into(Full, &mut sink)?;
+        let stage = query.run_into(Full, &mut sink).ok_or(Unsupported)?;
         self.stats.record(sink.stage(stage), &cost);
-        Some(())
+        Ok(())
     }
 
     fn visit_half_space(
         &mut self,
         pair: &Pair<'_, HalfSpace>,
         workspace: &mut Workspace,
-    ) -> Option<()> {
-        let pose = pair.pose(ValidPose::new(self.pos12)?);
+    ) -> Result<(), Unsupported> {
+        let pose = pair.pose(valid_pose(self.pos12)?);
         let max_distance = pair.core_distance(self.prediction, pair.hull.radius());
-        let contacts = HalfSpaceContacts {
-            hull: pair.hull,
-            pose: &pose,
-            max_distance,
-            scratch: &mut workspace.clip,
+        let mut sink = ManifoldSink {
+            manifold: &mut *self.manifold,
+            pair,
+            frame: AxisFrame::First,
+            contacts: HalfSpaceContacts {
+                hull: pair.hull,
+                pose: &pose,
+                max_distance,
+                scratch: &mut workspace.clip,
+            },
+            is_kept: false,
         };
-        let manifold = KernelManifold::new(self.manifold, pair, AxisFrame::First);
-        let mut sink = ManifoldSink::new(manifold, contacts);
         let mut cost = Cost::default();
         let stage = plane::run_into(pair, &pose, max_distance, &mut sink, &mut cost);
         self.stats.record(sink.stage(stage), &cost);
-        Some(())
+        Ok(())
     }
 
     /// Proves the shapes apart. What is not, or has contacts, is parry's.
@@ -99,23 +110,34 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         pair: &Pair<'_, B>,
         features: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
-    ) -> Option<()> {
-        let pos12 = ValidPose::new(self.pos12)?;
+    ) -> Result<(), Unsupported> {
+        let pos12 = valid_pose(self.pos12)?;
         if self.manifold.points.is_empty() {
             let pose = pair.pose(pos12);
             let cso = pair.cso(&pose);
             let max_distance = pair.core_distance(self.prediction, cso.size());
-            let manifold = KernelManifold::new(self.manifold, pair, AxisFrame::First);
-            let mut sink = ManifoldSink::new(manifold, NoContacts);
+            let mut sink = ManifoldSink {
+                manifold: &mut *self.manifold,
+                pair,
+                frame: AxisFrame::First,
+                contacts: NoContacts,
+                is_kept: false,
+            };
             let mut cost = Cost::default();
             let mut query = Query::new(&cso, max_distance, &mut workspace.epa, &mut cost);
             if let Some(stage) = query.run_into(AxisOnly, &mut sink) {
                 self.stats.record(stage, &cost);
-                return Some(());
+                return Ok(());
             }
         }
         self.stats.record_left(Left::CurvedContact);
         self.update_by_parry(pair, features);
-        Some(())
+        Ok(())
     }
+}
+
+/// Where the manifold is: mostly where it was in the frame before.
+#[inline]
+fn key_of<T>(manifold: &T) -> u64 {
+    (&raw const *manifold).addr() as u64
 }

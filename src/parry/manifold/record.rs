@@ -68,9 +68,9 @@ impl<'a> AxisFrame<'a> {
 
 /// A manifold as the kernels see it: in their order of the shapes, whose rounded borders are taken off.
 pub(super) struct KernelManifold<'a, M, C> {
-    pub(super) manifold: &'a mut ContactManifold<M, C>,
-    pub(super) order: PairOrder,
-    pub(super) border_radii: [f64; 2],
+    pub manifold: &'a mut ContactManifold<M, C>,
+    pub order: PairOrder,
+    pub border_radii: [f64; 2],
     frame: AxisFrame<'a>,
 }
 
@@ -87,12 +87,6 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
             border_radii: pair.border_radii,
             frame,
         }
-    }
-
-    /// Where the manifold is: mostly where it was in the frame before.
-    #[inline]
-    pub fn key(&self) -> u64 {
-        (&raw const *self.manifold).addr() as u64
     }
 
     /// What the previous frame left.

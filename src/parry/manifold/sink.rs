@@ -1,7 +1,10 @@
 //! From the answer of a query to a manifold.
 
-use super::record::KernelManifold;
+use parry3d::query::ContactManifold;
+
+use super::record::{AxisFrame, KernelManifold};
 use crate::gjk::SeparatingAxis;
+use crate::parry::pair::Pair;
 use crate::query::{PairMemory, Proximity, Sink};
 use crate::stats::Stage;
 
@@ -28,21 +31,20 @@ impl UpdateContacts for NoContacts {
     }
 }
 
-/// Brings a manifold up to date.
-pub(super) struct ManifoldSink<'a, M, C, U> {
-    pub manifold: KernelManifold<'a, M, C>,
+/// Brings a manifold up to date. Only references: most pairs are apart, and what is copied for
+/// contacts would cost them more than the rest.
+pub(super) struct ManifoldSink<'a, 'p, M, C, B, U> {
+    pub manifold: &'a mut ContactManifold<M, C>,
+    pub pair: &'a Pair<'p, B>,
+    pub frame: AxisFrame<'a>,
     pub contacts: U,
     pub is_kept: bool,
 }
 
-impl<'a, M, C, U> ManifoldSink<'a, M, C, U> {
+impl<M, C, B, U> ManifoldSink<'_, '_, M, C, B, U> {
     #[inline(always)]
-    pub fn new(manifold: KernelManifold<'a, M, C>, contacts: U) -> Self {
-        Self {
-            manifold,
-            contacts,
-            is_kept: false,
-        }
+    fn kernel_manifold(&mut self) -> KernelManifold<'_, M, C> {
+        KernelManifold::new(self.manifold, self.pair, self.frame)
     }
 
     /// What the query's stage counts as.
@@ -57,24 +59,29 @@ impl<'a, M, C, U> ManifoldSink<'a, M, C, U> {
 }
 
 // perf: in calls the answers would go through memory, which pairs that are apart notice.
-impl<M, C: Default + Copy, U: UpdateContacts> Sink for ManifoldSink<'_, M, C, U> {
+impl<M, C, B, U> Sink for ManifoldSink<'_, '_, M, C, B, U>
+where
+    C: Default + Copy,
+    U: UpdateContacts,
+{
     #[inline(always)]
-    fn memory(&self) -> PairMemory {
-        self.manifold.memory()
+    fn memory(&mut self) -> PairMemory {
+        self.kernel_manifold().memory()
     }
 
     #[inline(always)]
     fn spheres_apart(&mut self) {
-        self.manifold.forget();
+        self.kernel_manifold().forget();
     }
 
     #[inline(always)]
     fn separated(&mut self, apart: &SeparatingAxis) {
-        self.manifold.set_axis(apart.axis, apart.ids);
+        self.kernel_manifold().set_axis(apart.axis, apart.ids);
     }
 
     #[inline(always)]
     fn near(&mut self, near: &Proximity) {
-        self.is_kept = self.contacts.update_contacts(&mut self.manifold, near);
+        let mut manifold = KernelManifold::new(self.manifold, self.pair, self.frame);
+        self.is_kept = self.contacts.update_contacts(&mut manifold, near);
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use parry3d::math::{Pose, Real, Vector};
-use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus};
+use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus, Unsupported};
 use parry3d::shape::{PolygonalFeatureMap, Shape};
 
 use crate::hull::Hull;
@@ -17,15 +17,15 @@ use crate::stats::Cost;
 use crate::support::{Cso, Polytope, Support};
 use crate::tolerance::{GRAZING, RAY_TOUCHING};
 
-/// When shape 2, moving by `velocity` relative to shape 1 (in frame 1), meets shape 1. The outer
-/// `None`: not a pair for us. As with parry, a shape that does not move meets nothing.
+/// When shape 2, moving by `velocity` relative to shape 1 (in frame 1), meets shape 1. As with parry, a
+/// shape that does not move meets nothing.
 pub(crate) fn cast_shapes(
     pos12: &Pose,
     velocity: Vector,
     shape_1: &dyn Shape,
     shape_2: &dyn Shape,
     options: ShapeCastOptions,
-) -> Option<Option<ShapeCastHit>> {
+) -> Result<Option<ShapeCastHit>, Unsupported> {
     let cast = Cast {
         pos12,
         velocity,
@@ -49,7 +49,7 @@ impl PairVisitor for Cast<'_> {
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,
-    ) -> Option<Self::Answer> {
+    ) -> Result<Self::Answer, Unsupported> {
         self.cast(pair, |cso, velocity, frame| {
             self.overlap(cso, velocity, frame, workspace)
         })
@@ -61,8 +61,8 @@ impl PairVisitor for Cast<'_> {
         pair: &Pair<'_, B>,
         _: &dyn PolygonalFeatureMap,
         _: &mut Workspace,
-    ) -> Option<Self::Answer> {
-        self.cast(pair, |_, _, _| None)
+    ) -> Result<Self::Answer, Unsupported> {
+        self.cast(pair, |_, _, _| Err(Unsupported))
     }
 }
 
@@ -71,11 +71,15 @@ impl Cast<'_> {
     fn cast<B: Support>(
         &self,
         pair: &Pair<'_, B>,
-        overlap: impl FnOnce(&Cso<'_, Hull, B>, DVec3, &KernelFrame<'_>) -> Option<Option<ShapeCastHit>>,
-    ) -> Option<Option<ShapeCastHit>> {
+        overlap: impl FnOnce(
+            &Cso<'_, Hull, B>,
+            DVec3,
+            &KernelFrame<'_>,
+        ) -> Result<Option<ShapeCastHit>, Unsupported>,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let moves = self.velocity.is_finite() && self.velocity != Vector::ZERO;
         let Some(pos12) = ValidPose::new(self.pos12).filter(|_| moves) else {
-            return Some(None);
+            return Ok(None);
         };
         let pose = pair.pose(pos12);
         let cso = pair.cso(&pose);
@@ -95,13 +99,13 @@ impl Cast<'_> {
             &mut Cost::default(),
         );
         match impact {
-            RayCast::Miss => Some(None),
-            RayCast::Hit(impact) => Some(Some(hit_at(&impact, velocity, &frame))),
+            RayCast::Miss => Ok(None),
+            RayCast::Hit(impact) => Ok(Some(hit_at(&impact, velocity, &frame))),
             // Also false for NaN.
             RayCast::Overlap if self.options.max_time_of_impact >= 0.0 => {
                 overlap(&cso, velocity, &frame)
             }
-            RayCast::Overlap => Some(None),
+            RayCast::Overlap => Ok(None),
         }
     }
 
@@ -118,15 +122,16 @@ impl Cast<'_> {
         velocity: DVec3,
         frame: &KernelFrame<'_>,
         workspace: &mut Workspace,
-    ) -> Option<Option<ShapeCastHit>> {
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let mut cost = Cost::default();
         let mut query = Query::new(cso, f64::INFINITY, &mut workspace.epa, &mut cost);
-        let Answer::Near(near) = query.run(&PairMemory::None)?.0 else {
-            return Some(None);
+        let (answer, _) = query.run(&PairMemory::None).ok_or(Unsupported)?;
+        let Answer::Near(near) = answer else {
+            return Ok(None);
         };
         let departs = near.normal.dot(velocity) >= -GRAZING * velocity.length();
         if departs && !self.options.stop_at_penetration {
-            return Some(None);
+            return Ok(None);
         }
         let near = CallerProximity::of_proximity(&near, frame);
         let slack = RAY_TOUCHING * cso.size();
@@ -135,7 +140,7 @@ impl Cast<'_> {
         } else {
             ShapeCastStatus::Converged
         };
-        Some(Some(hit(0.0, &near, status)))
+        Ok(Some(hit(0.0, &near, status)))
     }
 }
 

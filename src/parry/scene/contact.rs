@@ -1,12 +1,12 @@
 //! The deepest contact of two shapes, without memory.
 
 use parry3d::math::{Pose, Real};
-use parry3d::query::Contact;
+use parry3d::query::{Contact, Unsupported};
 use parry3d::shape::{PolygonalFeatureMap, Shape};
 
 use crate::epa;
 use crate::parry::convert::HalfSpace;
-use crate::parry::pair::{self, Pair, PairVisitor};
+use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
 use crate::parry::scaled;
 use crate::parry::scene::caller::{KernelFrame, NearestPoints};
 use crate::parry::scene::separation::{Separation, SeparationQuery, over_half_space};
@@ -23,7 +23,7 @@ pub(crate) fn contact(
     shape_1: &dyn Shape,
     shape_2: &dyn Shape,
     prediction: Real,
-) -> Option<Option<Contact>> {
+) -> Result<Option<Contact>, Unsupported> {
     let query = ContactQuery { pos12, prediction };
     pair::visit(shape_1, shape_2, query)
 }
@@ -56,14 +56,15 @@ impl PairVisitor for ContactQuery<'_> {
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,
-    ) -> Option<Self::Answer> {
-        let pose = pair.pose(ValidPose::new(self.pos12)?);
+    ) -> Result<Self::Answer, Unsupported> {
+        let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
         let max_distance = pair.core_distance(self.prediction, cso.size());
         let mut sink = NearestPoints::new(pair, &pose);
         Query::new(&cso, max_distance, &mut workspace.epa, &mut Cost::default())
-            .run_into(Full, &mut sink)?;
-        Some(sink.nearest.map(|near| near.contact()))
+            .run_into(Full, &mut sink)
+            .ok_or(Unsupported)?;
+        Ok(sink.nearest.map(|near| near.contact()))
     }
 
     /// How deep they overlap is parry's to say. Where they only touch it may not know.
@@ -72,7 +73,7 @@ impl PairVisitor for ContactQuery<'_> {
         pair: &Pair<'_, B>,
         features: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
-    ) -> Option<Self::Answer> {
+    ) -> Result<Self::Answer, Unsupported> {
         let query = SeparationQuery {
             pos12: self.pos12,
             max_distance: self.prediction,
@@ -80,10 +81,10 @@ impl PairVisitor for ContactQuery<'_> {
         match query.separation(pair, GJK_CURVED_GAP, workspace)? {
             Separation::Overlapping => {
                 let contact = scaled::contact(pair, features, self.pos12);
-                Some(contact.or_else(|| self.depth(pair, workspace)))
+                Ok(contact.or_else(|| self.depth(pair, workspace)))
             }
-            Separation::Within(near) => Some(Some(near.contact())),
-            Separation::Beyond => Some(None),
+            Separation::Within(near) => Ok(Some(near.contact())),
+            Separation::Beyond => Ok(None),
         }
     }
 
@@ -91,8 +92,8 @@ impl PairVisitor for ContactQuery<'_> {
         &mut self,
         pair: &Pair<'_, HalfSpace>,
         _: &mut Workspace,
-    ) -> Option<Self::Answer> {
+    ) -> Result<Self::Answer, Unsupported> {
         let near = over_half_space(pair, self.pos12, self.prediction)?;
-        Some(near.map(|near| near.contact()))
+        Ok(near.map(|near| near.contact()))
     }
 }

@@ -20,13 +20,10 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        if let Some(intersecting) = scene::intersect(pos12, g1, g2) {
-            return Ok(intersecting.into());
-        }
-        match parts::intersection_test(self, pos12, g1, g2) {
-            Some(intersection) => Ok(intersection),
-            None => self.fallback.intersection_test(pos12, g1, g2),
-        }
+        scene::intersect(pos12, g1, g2)
+            .map(ShapeIntersection::from)
+            .or_else(|_| parts::intersection_test(self, pos12, g1, g2))
+            .or_else(|_| self.fallback.intersection_test(pos12, g1, g2))
     }
 
     fn distance(
@@ -35,13 +32,10 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        if let Some(distance) = scene::distance(pos12, g1, g2) {
-            return Ok(distance.into());
-        }
-        match parts::distance(self, pos12, g1, g2) {
-            Some(distance) => Ok(distance),
-            None => self.fallback.distance(pos12, g1, g2),
-        }
+        scene::distance(pos12, g1, g2)
+            .map(ShapeDistance::from)
+            .or_else(|_| parts::distance(self, pos12, g1, g2))
+            .or_else(|_| self.fallback.distance(pos12, g1, g2))
     }
 
     fn contact(
@@ -51,11 +45,9 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         g2: &dyn Shape,
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
-        let ours = contact::contact(pos12, g1, g2, prediction);
-        match ours.or_else(|| parts::contact(self, pos12, g1, g2, prediction)) {
-            Some(contact) => Ok(contact),
-            None => self.fallback.contact(pos12, g1, g2, prediction),
-        }
+        contact::contact(pos12, g1, g2, prediction)
+            .or_else(|_| parts::contact(self, pos12, g1, g2, prediction))
+            .or_else(|_| self.fallback.contact(pos12, g1, g2, prediction))
     }
 
     fn closest_points(
@@ -65,11 +57,9 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         g2: &dyn Shape,
         max_dist: Real,
     ) -> Result<ClosestPoints, Unsupported> {
-        let ours = scene::closest_points(pos12, g1, g2, max_dist);
-        match ours.or_else(|| parts::closest_points(self, pos12, g1, g2, max_dist)) {
-            Some(points) => Ok(points),
-            None => self.fallback.closest_points(pos12, g1, g2, max_dist),
-        }
+        scene::closest_points(pos12, g1, g2, max_dist)
+            .or_else(|_| parts::closest_points(self, pos12, g1, g2, max_dist))
+            .or_else(|_| self.fallback.closest_points(pos12, g1, g2, max_dist))
     }
 
     fn cast_shapes(
@@ -80,15 +70,12 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        if let Some(hit) = cast::cast_shapes(pos12, local_vel12, g1, g2, options) {
-            return Ok(hit);
-        }
-        match parts::cast_shapes(self, pos12, local_vel12, g1, g2, options) {
-            Some(hit) => hit,
-            None => self
-                .fallback
-                .cast_shapes(pos12, local_vel12, g1, g2, options),
-        }
+        cast::cast_shapes(pos12, local_vel12, g1, g2, options)
+            .or_else(|_| parts::cast_shapes(self, pos12, local_vel12, g1, g2, options))
+            .or_else(|_| {
+                self.fallback
+                    .cast_shapes(pos12, local_vel12, g1, g2, options)
+            })
     }
 
     fn cast_shapes_nonlinear(
@@ -104,6 +91,5 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         let movers =
             [(motion1, g1), (motion2, g2)].map(|(motion, shape)| MovingShape { motion, shape });
         parts::cast_shapes_nonlinear(self, movers, [start_time, end_time], stop_at_penetration)
-            .ok_or(Unsupported)
     }
 }

@@ -4,29 +4,36 @@
 //! than [`MIN_DIRECTED_DISTANCE`](crate::tolerance::MIN_DIRECTED_DISTANCE) touch, for all of them.
 
 use parry3d::math::{Pose, Real};
-use parry3d::query::ClosestPoints;
+use parry3d::query::{ClosestPoints, Unsupported};
 use parry3d::shape::{PolygonalFeatureMap, Shape};
 
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space;
-use crate::parry::pair::{self, Pair, PairVisitor};
+use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
 use crate::parry::scene::caller::{CallerProximity, NearestPoints};
 use crate::parry::workspace::Workspace;
-use crate::pose::ValidPose;
 use crate::query::{Distance, Query};
 use crate::stats::Cost;
 use crate::support::{Polytope, Support};
 use crate::tolerance::{GJK_CURVED_GAP, GJK_GAP_OF_SIZE};
 
-/// Whether two shapes touch or overlap. `None`, here and below: not a pair for us.
-pub(crate) fn intersect(pos12: &Pose, shape_1: &dyn Shape, shape_2: &dyn Shape) -> Option<bool> {
+/// Whether two shapes touch or overlap.
+pub(crate) fn intersect(
+    pos12: &Pose,
+    shape_1: &dyn Shape,
+    shape_2: &dyn Shape,
+) -> Result<bool, Unsupported> {
     let separation = separation(pos12, shape_1, shape_2, 0.0)?;
-    Some(matches!(separation, Separation::Overlapping))
+    Ok(matches!(separation, Separation::Overlapping))
 }
 
 /// Zero where the shapes overlap.
-pub(crate) fn distance(pos12: &Pose, shape_1: &dyn Shape, shape_2: &dyn Shape) -> Option<Real> {
-    Some(match separation(pos12, shape_1, shape_2, Real::INFINITY)? {
+pub(crate) fn distance(
+    pos12: &Pose,
+    shape_1: &dyn Shape,
+    shape_2: &dyn Shape,
+) -> Result<Real, Unsupported> {
+    Ok(match separation(pos12, shape_1, shape_2, Real::INFINITY)? {
         Separation::Overlapping => 0.0,
         Separation::Within(near) => near.signed_distance as Real,
         Separation::Beyond => Real::INFINITY,
@@ -39,8 +46,8 @@ pub(crate) fn closest_points(
     shape_1: &dyn Shape,
     shape_2: &dyn Shape,
     max_distance: Real,
-) -> Option<ClosestPoints> {
-    Some(match separation(pos12, shape_1, shape_2, max_distance)? {
+) -> Result<ClosestPoints, Unsupported> {
+    Ok(match separation(pos12, shape_1, shape_2, max_distance)? {
         Separation::Overlapping => ClosestPoints::Intersecting,
         Separation::Within(near) => {
             let [p1, p2] = near.points.map(|p| p.as_vec3());
@@ -76,7 +83,7 @@ fn separation(
     shape_1: &dyn Shape,
     shape_2: &dyn Shape,
     max_distance: Real,
-) -> Option<Separation> {
+) -> Result<Separation, Unsupported> {
     let query = SeparationQuery {
         pos12,
         max_distance,
@@ -96,8 +103,8 @@ impl SeparationQuery<'_> {
         pair: &Pair<'_, B>,
         gap: f64,
         workspace: &mut Workspace,
-    ) -> Option<Separation> {
-        let pose = pair.pose(ValidPose::new(self.pos12)?);
+    ) -> Result<Separation, Unsupported> {
+        let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
         // Within its gap GJK does not know: there, too, they touch, for all queries.
         let slack = gap * cso.size();
@@ -105,7 +112,7 @@ impl SeparationQuery<'_> {
         let mut sink = NearestPoints::new(pair, &pose);
         let found = Query::new(&cso, max_distance, &mut workspace.epa, &mut Cost::default())
             .run_into(Distance { gap }, &mut sink);
-        Some(match (found, sink.nearest) {
+        Ok(match (found, sink.nearest) {
             (None, _) => Separation::Overlapping,
             (_, None) => Separation::Beyond,
             (_, Some(near)) => Separation::of(near, pair.touching(cso.size()) + slack),
@@ -124,7 +131,7 @@ impl PairVisitor for SeparationQuery<'_> {
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,
-    ) -> Option<Self::Answer> {
+    ) -> Result<Self::Answer, Unsupported> {
         self.separation(pair, GJK_GAP_OF_SIZE, workspace)
     }
 
@@ -133,7 +140,7 @@ impl PairVisitor for SeparationQuery<'_> {
         pair: &Pair<'_, B>,
         _: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
-    ) -> Option<Self::Answer> {
+    ) -> Result<Self::Answer, Unsupported> {
         self.separation(pair, GJK_CURVED_GAP, workspace)
     }
 
@@ -141,22 +148,22 @@ impl PairVisitor for SeparationQuery<'_> {
         &mut self,
         pair: &Pair<'_, HalfSpace>,
         _: &mut Workspace,
-    ) -> Option<Self::Answer> {
+    ) -> Result<Self::Answer, Unsupported> {
         let near = over_half_space(pair, self.pos12, self.max_distance)?;
         let touching = pair.touching(pair.hull.radius());
-        Some(near.map_or(Separation::Beyond, |near| Separation::of(near, touching)))
+        Ok(near.map_or(Separation::Beyond, |near| Separation::of(near, touching)))
     }
 }
 
-/// Where a hull is deepest in a half-space; the inner `None` if it is farther away than `max_distance`.
+/// Where a hull is deepest in a half-space; `None` if it is farther away than `max_distance`.
 pub(super) fn over_half_space(
     pair: &Pair<'_, HalfSpace>,
     pos12: &Pose,
     max_distance: Real,
-) -> Option<Option<CallerProximity>> {
-    let pose = pair.pose(ValidPose::new(pos12)?);
+) -> Result<Option<CallerProximity>, Unsupported> {
+    let pose = pair.pose(valid_pose(pos12)?);
     let max_distance = pair.core_distance(max_distance, pair.hull.radius());
     let mut sink = NearestPoints::new(pair, &pose);
     half_space::run_into(pair, &pose, max_distance, &mut sink, &mut Cost::default());
-    Some(sink.nearest)
+    Ok(sink.nearest)
 }
