@@ -8,91 +8,21 @@
 //! `v` nearest to the origin. A support point `w` in direction `-v` bounds the distance from
 //! below by `v·w / |v|`, `|v|` bounds it from above: every answer carries both bounds.
 
+mod simplex;
+
+pub use simplex::Simplex;
+
 use glam::DVec3;
 
+use crate::pose::is_unit;
 use crate::simplex::{DistanceSubalgorithm, Nearest};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Support, VertexId};
-use crate::tolerance::{
-    DEPTH_GAP, GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, MIN_DIRECTED_DISTANCE, NEARLY_UNIT,
-};
+use crate::tolerance::{DEPTH_GAP, GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, MIN_DIRECTED_DISTANCE};
 
 /// Convergence is finite, and even the adversarial families need far fewer iterations; the
 /// bound only guards against a stall that no other test sees.
 const MAX_ITERATIONS: usize = 256;
-
-/// At most four vertices of the Minkowski difference, each in a slot of its own: dropping one is
-/// clearing a bit, and a vertex that was added on trial leaves the others where they were.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Simplex {
-    slots: [CsoVertex; 4],
-    occupied: u8,
-}
-
-impl Simplex {
-    /// The vertices.
-    pub fn vertices(&self) -> impl Iterator<Item = &CsoVertex> + Clone {
-        self.weighted(&[0.0; 4]).map(|(vertex, _)| vertex)
-    }
-
-    fn weighted(&self, weights: &[f64; 4]) -> impl Iterator<Item = (&CsoVertex, f64)> + Clone {
-        let slots = self.slots.iter().zip(*weights).enumerate();
-        slots
-            .filter(|(i, _)| self.occupied >> i & 1 == 1)
-            .map(|(_, vertex)| vertex)
-    }
-
-    pub(crate) fn contains(&self, vertex: &CsoVertex) -> bool {
-        self.vertices().any(|v| v.w == vertex.w)
-    }
-
-    /// Puts a vertex into the lowest free slot. There is one: a full simplex holds the point that is
-    /// sought, and ends the loop.
-    pub(crate) fn push(&mut self, vertex: CsoVertex) {
-        let slot = self.occupied.trailing_ones() as usize;
-        self.slots[slot] = vertex;
-        self.occupied |= 1 << slot;
-    }
-
-    /// Drops the vertices that are not in the `face` of a nearest point.
-    pub(crate) fn keep(&mut self, face: u8) {
-        self.occupied = face;
-    }
-
-    /// The point nearest to `x`, relative to `x`; its face and weights refer to slots.
-    #[inline(always)]
-    pub(crate) fn nearest<S: DistanceSubalgorithm>(&self, x: DVec3) -> Nearest {
-        let mut points = [DVec3::ZERO; 4];
-        let mut slots = [0; 4];
-        let mut count = 0;
-        for slot in 0..4 {
-            if self.occupied >> slot & 1 == 1 {
-                points[count] = self.slots[slot].w - x;
-                slots[count] = slot;
-                count += 1;
-            }
-        }
-        let nearest = S::nearest(&points[..count]);
-        if slots[..count] == [0, 1, 2, 3][..count] {
-            return nearest;
-        }
-        let mut by_slot = Nearest {
-            point: nearest.point,
-            ..Nearest::default()
-        };
-        for (i, &slot) in slots[..count].iter().enumerate() {
-            by_slot.face |= (nearest.face >> i & 1) << slot;
-            by_slot.lambda[slot] = nearest.lambda[i];
-        }
-        by_slot
-    }
-
-    /// The point of shape 1 that a nearest point comes from.
-    pub(crate) fn on_1(&self, nearest: &Nearest) -> DVec3 {
-        let weighted = self.weighted(&nearest.lambda);
-        weighted.map(|(v, weight)| v.on_1 * weight).sum()
-    }
-}
 
 /// The nearest points of two disjoint shapes, in frame 1.
 #[derive(Clone, Copy, Debug)]
@@ -153,10 +83,7 @@ pub fn test_axis<A: Support, B: Support>(
     beyond: f64,
     cost: &mut Cost,
 ) -> AxisTest {
-    debug_assert!(
-        !axis.is_finite() || (axis.length_squared() - 1.0).abs() < 2.0 * NEARLY_UNIT,
-        "no unit vector: {axis}"
-    );
+    debug_assert!(is_unit(axis), "no unit vector: {axis}");
     let (on_2, id_2) = cso.support_2(axis, start[1], cost);
     // The bounding sphere of shape 1 may do: then none of its vertices is looked at. The axis may be longer
     // than 1 by its rounding; half of 1 and its square is not less than its length.
@@ -213,13 +140,11 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
 ) -> Outcome {
     let size = cso.size();
     let absolute_gap = gap * size;
-    let mut simplex = Simplex::default();
-    let mut ids = [0; 2];
     debug_assert!(!start.is_empty(), "no vertex to start from");
-    for &vertex in start.iter().take(3) {
-        simplex.push(vertex);
-        ids = vertex.ids;
-    }
+    let start = &start[..start.len().min(3)];
+    let mut simplex = Simplex::default();
+    start.iter().for_each(|&vertex| simplex.push(vertex));
+    let mut ids = start.last().map_or([0; 2], |vertex| vertex.ids);
     let mut nearest = simplex.nearest::<S>(DVec3::ZERO);
     simplex.keep(nearest.face);
     for iteration in 0..MAX_ITERATIONS {

@@ -77,6 +77,7 @@
 #![deny(unsafe_code)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
+mod arg_max;
 #[cfg(feature = "bevy")]
 pub mod bevy;
 mod epa;

@@ -54,6 +54,12 @@ pub(crate) fn unit_scale(length_squared: f64) -> f64 {
     }
 }
 
+/// For assertions: a unit vector up to the rounding of f32, or what is not finite anyway.
+pub(crate) fn is_unit(direction: DVec3) -> bool {
+    let excess = direction.length_squared() - 1.0;
+    excess.abs() < 2.0 * NEARLY_UNIT || !excess.is_finite()
+}
+
 impl RelativePose {
     /// From an f32 pose of shape 2 in frame 1; its quaternion is normalised here, in f64. `None` if the
     /// pose is not finite, or its quaternion has no direction.

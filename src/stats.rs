@@ -1,4 +1,4 @@
-//! Which stage answered, and at what cost: counters that tell whether the coherence pays.
+//! Counters of which stage answered, and at what cost: they show whether coherence pays.
 
 use std::fmt;
 use std::sync::Arc;

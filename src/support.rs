@@ -20,7 +20,7 @@ pub trait Support {
     ///
     /// # Panics
     ///
-    /// Perhaps, if `start` is no vertex of the shape: see [`clamp_vertex`](Self::clamp_vertex).
+    /// May panic if the shape has no vertex `start`: see [`clamp_vertex`](Self::clamp_vertex).
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId);
 
     /// A start for [`support`](Self::support) when no similar query is known.
@@ -55,13 +55,13 @@ impl<T: ExactSizeIterator<Item = DVec3> + DoubleEndedIterator + Clone> FacePoint
 
 /// A convex polytope: a support mapping with faces and edges around it.
 ///
-/// Vertices and faces that it is asked about must be its own ([`has_face`](Self::has_face)): with others
-/// its methods may panic. Edges are looked for.
+/// Its methods may panic for vertices and faces that it does not have ([`has_face`](Self::has_face)).
+/// For edges they check.
 pub trait Polytope: Support {
     /// The position of a vertex.
     fn vertex(&self, vertex: VertexId) -> DVec3;
 
-    /// The vertices that share an edge with a vertex, some perhaps more than once.
+    /// The vertices that share an edge with a vertex. Some may occur more than once.
     fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId>;
 
     /// The same in fours.

@@ -138,7 +138,7 @@ pub const KEPT_ANGLE_COS: f64 = COS_1_DEGREE;
 /// slides or rolls takes its contacts along in steps of this size.
 pub const KEPT_DRIFT: f64 = 2e-2;
 
-/// The deepest of the contacts that keep their places is told at the query's depth. By this share of
+/// The deepest of the contacts that keep their places is reported at the query's depth. By this share of
 /// the smaller shape's radius, the promised accuracy, it may lie above the deepest place of all: corners tie up
 /// to the tilt of a body at rest, and must not take turns. Beyond it, a corner without a contact has
 /// become the deepest, and the contacts are chosen anew.

@@ -1,4 +1,4 @@
-//! Rapier's collision events, told in entities.
+//! Rapier's collision events, with entities in the place of colliders.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -55,7 +55,7 @@ impl CollisionEvent {
     }
 }
 
-/// Keeps the collisions of a step; rapier tells them in a fixed order.
+/// Keeps the collisions of a step; rapier reports them in a fixed order.
 #[derive(Default)]
 pub(super) struct CollisionRecorder(Mutex<Vec<rapier::CollisionEvent>>);
 

@@ -1,4 +1,4 @@
-//! What an entity says about its body.
+//! The components that describe an entity's body.
 
 use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::Component;
@@ -9,7 +9,7 @@ use rapier3d::prelude::{
 
 use super::context::PhysicsContext;
 
-/// A rigid body, dynamic unless told otherwise; what can be told is rapier's builder.
+/// A rigid body as rapier's builder describes it; dynamic by default.
 ///
 /// The pose and the velocity of the builder are ignored: [`PhysicsTransform`] and [`Velocity`]
 /// have them. A change is applied at the next step, with forces reset and the body awake.
@@ -40,7 +40,7 @@ impl From<RigidBodyBuilder> for RigidBody {
     }
 }
 
-/// The shape and the surface of a body, as rapier's builder has them.
+/// The shape and the surface of a body, as rapier's builder describes them.
 ///
 /// The builder's position is in the frame of the body. A change, also of the shape, is applied at
 /// the next step. Removing this component leaves a body without collider, and without the mass
@@ -77,7 +77,7 @@ impl From<SharedShape> for Collider {
     }
 }
 
-/// The pose of a body in the world: written after each step, and obeyed where you change it.
+/// The pose of a body in the world: written after each step; your changes are applied before the next one.
 ///
 /// A changed pose is a teleport, but for bodies of the type `KinematicPositionBased`, which move
 /// to it within the next step. Its vector and quaternion are those of Bevy's `Transform`.
@@ -120,7 +120,7 @@ impl From<PhysicsTransform> for Pose {
     }
 }
 
-/// The velocity of a body: written after each step, and obeyed where you change it.
+/// The velocity of a body: written after each step; your changes are applied before the next one.
 ///
 /// ```
 /// use isa_gjk::bevy::Velocity;

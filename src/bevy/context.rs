@@ -96,8 +96,8 @@ impl PhysicsContext {
         context
     }
 
-    /// The dispatcher whose stats are told, and which is promised within a step that shapes do not
-    /// change. To be set in the narrow phase of a `world` that is put in the place of this one.
+    /// The dispatcher whose statistics are reported. Within a step it relies on shapes that do not
+    /// change. If you replace `world`, give this dispatcher to the narrow phase of the new one.
     pub fn dispatcher(&self) -> &IsaGjkDispatcher {
         &self.dispatcher
     }

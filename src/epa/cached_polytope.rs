@@ -86,7 +86,7 @@ impl CachedPolytope {
             let outward = (b - a).cross(c - a);
             let height = outward.dot(a);
             let squared = height * height / outward.length_squared();
-            // Also of a face without area, whose distance is no number.
+            // Also for a face without area, whose distance is NaN.
             if !(height > 0.0 && squared > 0.0) {
                 return f64::NEG_INFINITY;
             }

@@ -19,6 +19,7 @@ pub use polytope_cache::PolytopeCache;
 
 use glam::DVec3;
 
+use crate::pose::is_unit;
 use crate::simplex::{DistanceSubalgorithm, Preferred};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Support};
@@ -150,6 +151,7 @@ pub enum DepthSearch {
 fn witness(polytope: &ExpandingPolytope, face: u32, [lower_bound, depth]: [f64; 2]) -> Penetration {
     let (normal, _) = polytope.plane(face);
     let face = polytope.corners(face);
+    debug_assert!(is_unit(normal), "no unit vector: {normal}");
     // Measured from the foot of the normal, so that the depth does not swamp the position.
     let foot = normal * depth;
     let nearest = Preferred::nearest(&face.map(|v| v.w - foot));

@@ -5,7 +5,7 @@ use super::polytope::EpaScratch;
 use crate::stats::Cost;
 use crate::support::{Cso, Polytope, Support};
 
-/// Room for so many pairs, if each has a slot of its own.
+/// The number of pairs that there is room for, if each has a slot of its own.
 const SLOTS: usize = 1 << SLOT_BITS;
 const SLOT_BITS: u32 = 11;
 
@@ -24,7 +24,7 @@ pub struct PolytopeCache(Box<[CacheSlot]>);
 #[derive(Clone, Debug, Default)]
 struct CacheSlot {
     key: u64,
-    /// So many wishes of other pairs for the place are refused.
+    /// How many more attempts of other pairs to take the slot are refused.
     protected_misses: u8,
     polytope: Option<Box<CachedPolytope>>,
 }
@@ -36,8 +36,8 @@ impl Default for PolytopeCache {
 }
 
 impl PolytopeCache {
-    /// Whether [`penetration_below`](super::penetration_below) would say that the depth is known, as
-    /// far as the cached polytope of this pair can tell, or what it grows to in a few expansions.
+    /// Whether [`penetration_below`](super::penetration_below) would say that the depth is known, judging
+    /// by the cached polytope of this pair, or by what it grows to in a few expansions.
     pub fn proves_depth<A: Polytope, B: Polytope>(
         &mut self,
         key: u64,

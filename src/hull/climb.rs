@@ -28,7 +28,8 @@ use std::array;
 use glam::{DVec3, Vec3};
 
 use super::graph::{EdgeGraph, LAST, NeighborBlock};
-use crate::simd::{ArgMaxDot, LANES, coordinates};
+use crate::arg_max::ArgMaxDot;
+use crate::simd::{LANES, coordinates};
 use crate::stats::Cost;
 use crate::support::VertexId;
 use crate::tolerance::{DIP, SHORT_EDGE, SUPPORT_TIE};

@@ -28,7 +28,7 @@ pub(super) struct FaceRecord {
 }
 
 /// The mark of a face that belongs to a cluster, so that of the others, which are most, nothing more need be
-/// read. No hull has so many corners.
+/// read. No hull has that many corners.
 pub(super) const IN_CLUSTER: u32 = 1 << 31;
 
 impl FaceRecord {

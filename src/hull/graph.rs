@@ -29,7 +29,7 @@ pub(super) struct NeighborBlock {
     /// Ids of vertices; the highest bits of the first two are marks.
     pub(super) to: [u16; BLOCK],
     /// The face left of the edge to each of them. Right of it is that left of the next one. Where there
-    /// are more neighbours, the last one is no face, but where their block is.
+    /// are more neighbours, the last entry is not a face but the place of their block.
     pub(super) left: [u16; BLOCK],
 }
 
@@ -40,9 +40,9 @@ pub(super) const BLOCK: usize = 8;
 pub(super) const MARK: u16 = 1 << 15;
 /// The neighbour whose mark says that at this vertex a tie must be looked into.
 pub(super) const PLATEAU_SEARCH: usize = 0;
-/// The neighbour whose mark says that there are more of them in another block.
+/// The neighbour whose mark shows that another block has more of them.
 pub(super) const OVERFLOW: usize = 1;
-/// The last slot of a block, and how many neighbours it has that the next one has not.
+/// The last slot of a block, and how many of its neighbours the next block does not repeat.
 pub(super) const LAST: usize = BLOCK - 1;
 
 impl NeighborBlock {
@@ -198,6 +198,7 @@ fn unpack_edge(id: u32) -> (VertexId, usize) {
 /// The id of an edge from its lower vertex and its slot there.
 #[inline]
 pub(super) fn pack_edge(low: VertexId, slot: u16) -> u32 {
+    debug_assert!(u32::from(slot) < 1 << SLOT_BITS, "a slot of too many bits");
     low << SLOT_BITS | u32::from(slot)
 }
 

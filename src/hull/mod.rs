@@ -99,6 +99,7 @@ impl Hull {
     /// that was written to memory by coordinates and is read in pairs is waited for.
     #[inline(never)]
     fn extreme_vertex(&self, x: f64, y: f64, z: f64, start: VertexId, cost: &mut Cost) -> VertexId {
+        debug_assert!((start as usize) < self.points.len(), "no vertex: {start}");
         let dir = DVec3::new(x, y, z);
         match &self.search {
             SupportSearch::Scan(scan) => scan.extreme_vertex(&self.points, dir, start),

@@ -13,7 +13,7 @@ use glam::{DVec3, Vec3};
 use crate::support::VertexId;
 use crate::tolerance::SCAN_ROUNDING;
 
-/// Up to so many vertices, as many as a mask has bits, a scan is quicker than a cold climb, with 64
+/// Up to this many vertices, as many as a mask has bits, a scan is quicker than a cold climb, with 64
 /// by a third, and no slower than a warm one. With 100 a warm climb is quicker by 2 %, and GJK's
 /// climbs from iteration to iteration are.
 pub(super) const LARGEST: usize = 64;
@@ -53,8 +53,8 @@ impl Scan {
     }
 
     /// The extreme vertex of `points` in direction `dir`: of those that tie the preferred one, so
-    /// that contacts stay where they are, or the first. (Inlined, as what it calls: a direction that goes
-    /// through memory is waited for longer than a scan takes.)
+    /// that contacts stay where they are, or the first. (Inlined with all it calls: a direction that goes
+    /// through memory costs more time than the scan.)
     #[inline(always)]
     pub fn extreme_vertex(&self, points: &[Vec3], dir: DVec3, preferred: VertexId) -> VertexId {
         let mut candidates = self.candidates(dir);

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::support::VertexId;
 
-/// A cell for each vertex, up to so many cells per cube edge: those of hulls of 6,000 vertices. So
+/// A cell for each vertex, up to this many cells per cube edge: enough for hulls of 6,000 vertices. So
 /// half of all climbs begin where they end; with half of the cells 40 % do.
 const FINEST: usize = 32;
 

@@ -1,6 +1,8 @@
 //! Contacts with a half-space: corners of the face that lies on it.
 
-use crate::simd::f64x4;
+// perf: values of four lanes go through memory in calls, which cost a tenth of a manifold's update
+// without link-time optimisation. So what is inlined here is inlined always.
+
 use glam::Vec2;
 
 use super::clip::Clipper;
@@ -8,11 +10,10 @@ use super::contact_frame::ContactFrame;
 use super::contacts::{Contacts, MAX_POINTS};
 use super::reduce::Selection;
 use super::scratch::ClipScratch;
-use crate::pose::RelativePose;
+use crate::pose::{RelativePose, is_unit};
 use crate::query::{Feature, Proximity, vertex_of};
-use crate::simd::LANES;
-use crate::simd::{DVec3x4, to_f32x4};
-use crate::support::Polytope;
+use crate::simd::{DVec3x4, LANES, f64x4, to_f32x4};
+use crate::support::{FaceId, Polytope};
 use crate::tuning::{EDGE_ON, SAME_POINT};
 
 /// The contacts of a polytope with the half-space in front of its deepest vertex, the witness of
@@ -27,6 +28,7 @@ pub fn half_space_contacts(
 ) -> Contacts {
     let witness = vertex_of(shape, proximity.features[0]);
     let (normal, origin) = (proximity.normal, proximity.on_1);
+    debug_assert!(is_unit(normal), "no unit vector: {normal}");
     let distance = |on_1: DVec3x4| {
         let beyond = (on_1 - origin).dot(normal);
         f64x4::splat(proximity.signed_distance) - beyond
@@ -63,6 +65,28 @@ pub fn half_space_contacts(
             .for_each(|i| selection.push(Some(i)));
         return contacts(&selection);
     }
+    let frame = ContactFrame::new(origin, normal);
+    push_spread(
+        shape,
+        polygon,
+        &frame,
+        (distance, max_distance),
+        scratch,
+        &mut selection,
+    );
+    contacts(&selection)
+}
+
+/// Adds corners of a face that span much of the plane, first among those nearer than `max_distance`.
+#[inline(always)]
+fn push_spread(
+    shape: &impl Polytope,
+    polygon: FaceId,
+    frame: &ContactFrame,
+    (distance, max_distance): (impl Fn(DVec3x4) -> f64x4, f64),
+    scratch: &mut ClipScratch,
+    selection: &mut Selection,
+) {
     let ClipScratch {
         clipper: Clipper {
             window, corners, ..
@@ -70,13 +94,15 @@ pub fn half_space_contacts(
         candidates,
         ..
     } = scratch;
-    let plane = ContactFrame::new(origin, normal).projection();
+    let count = shape.face_len(polygon);
+    let plane = frame.projection();
     window.set(count, |numbers| {
         plane.flatten(shape.face_points_x4(polygon, numbers))
     });
     corners.set(window);
     let distances = |row: usize, _, _| {
-        let of_lane = |lane| shape.vertex(corner(LANES * row + lane));
+        let corner = |lane: usize| (LANES * row + lane).min(count - 1);
+        let of_lane = |lane| shape.vertex(shape.face_vertex(polygon, corner(lane)));
         to_f32x4(distance(DVec3x4::gather([0, 1, 2, 3], of_lane)))
     };
     let range = f32::NEG_INFINITY..=max_distance as f32;
@@ -84,5 +110,4 @@ pub fn half_space_contacts(
     candidates.set(corners, distances, range, same);
     selection.push_all(candidates.spread_out(corners, Vec2::ZERO, same));
     selection.fill_up(candidates);
-    contacts(&selection)
 }

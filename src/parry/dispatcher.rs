@@ -7,6 +7,7 @@ use parry3d::query::{
 };
 use parry3d::shape::Shape;
 
+use crate::map_pair::map_pair;
 use crate::parry::composite;
 use crate::parry::constraints::Constraints;
 use crate::parry::hull_cache::epoch::{Epoch, EpochSource};
@@ -63,7 +64,7 @@ impl<F> IsaGjkDispatcher<F> {
         }
     }
 
-    fn updater(&self, epoch: Option<Epoch>) -> Updater<'_, F> {
+    fn updater(&self, epoch: Epoch) -> Updater<'_, F> {
         Updater {
             fallback: &self.fallback,
             stats: &self.stats,
@@ -141,8 +142,9 @@ where
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
         let updater = self.updater(self.epochs.epoch());
-        let (shapes, operands) = ([g1, g2], (Operand::alone(g1), Operand::alone(g2)));
-        let may_be_composite = operands.0.may_be_composite() || operands.1.may_be_composite();
+        let shapes = [g1, g2];
+        let operands = map_pair(shapes, Operand::new);
+        let may_be_composite = operands[0].may_be_composite() || operands[1].may_be_composite();
         if may_be_composite
             && composite::contact_manifolds(
                 self, updater, pos12, shapes, prediction, manifolds, workspace,
@@ -165,10 +167,10 @@ where
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported> {
-        let operands = (Operand::alone(g1), Operand::alone(g2));
+        let operands = map_pair([g1, g2], Operand::new);
         let constraints = [normal_constraints1, normal_constraints2].map(Constraints::given);
         // Whoever takes shapes apart may make parts that do not outlive their pair.
-        let updater = self.updater(None);
+        let updater = self.updater(Epoch::of_pair());
         updater.update(pos12, operands, constraints, prediction, manifold)
     }
 }

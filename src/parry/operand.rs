@@ -4,7 +4,8 @@ use parry3d::math::Real;
 use parry3d::shape::{ConvexPolyhedron, RoundConvexPolyhedron, Shape, ShapeType};
 
 use crate::hull::Hull;
-use crate::parry::hull_cache::{EachProved, Find, HullCache, HullRef};
+use crate::parry::hull_cache::epoch::Epoch;
+use crate::parry::hull_cache::{HullCache, HullRef};
 use crate::parry::hull_shape::HullShape;
 
 /// A hull with a rounded border of this radius around it.
@@ -63,42 +64,18 @@ pub(crate) fn is_hull(shape: &dyn Shape) -> bool {
     HullSource::of(shape).is_some()
 }
 
-/// A shape of a pair, and how to find its hull.
-pub(crate) struct Operand<'a, F> {
+/// A shape of a pair.
+#[derive(Clone, Copy)]
+pub(crate) struct Operand<'a> {
     pub shape: &'a dyn Shape,
     hull: Option<HullSource<'a>>,
-    pub find: F,
 }
 
-impl<'a> Operand<'a, EachProved> {
-    /// A shape of which nothing is known.
+impl<'a> Operand<'a> {
     #[inline]
-    pub fn alone(shape: &'a dyn Shape) -> Self {
-        Self::new(shape, EachProved)
-    }
-}
-
-impl<F> Operand<'_, F> {
-    /// Whether both are one hull. A rounded one may have the address of the one within it.
-    #[inline(always)]
-    pub fn is_same<G>(&self, other: &Operand<'_, G>) -> bool {
-        std::ptr::addr_eq(self.shape, other.shape) && self.border_radius() == other.border_radius()
-    }
-
-    #[inline]
-    fn border_radius(&self) -> Real {
-        match self.hull {
-            Some(HullSource::Plain(_, border_radius)) => border_radius,
-            _ => 0.0,
-        }
-    }
-}
-
-impl<'a, F: Find<'a>> Operand<'a, F> {
-    #[inline]
-    pub fn new(shape: &'a dyn Shape, find: F) -> Self {
+    pub fn new(shape: &'a dyn Shape) -> Self {
         let hull = HullSource::of(shape);
-        Self { shape, hull, find }
+        Self { shape, hull }
     }
 
     #[inline]
@@ -117,22 +94,12 @@ impl<'a, F: Find<'a>> Operand<'a, F> {
             )
     }
 
-    /// The same once more.
-    #[inline]
-    pub fn again(&mut self) -> Operand<'a, &mut F> {
-        Operand {
-            shape: self.shape,
-            hull: self.hull,
-            find: &mut self.find,
-        }
-    }
-
     /// The hull, if the shape is one.
     #[inline(always)]
-    pub fn prepare(&mut self, cache: &mut HullCache) -> Option<HullHandle<'a>> {
+    pub fn prepare(&self, cache: &mut HullCache, epoch: Epoch) -> Option<HullHandle<'a>> {
         Some(match self.hull? {
             HullSource::Plain(polyhedron, border_radius) => HullHandle {
-                location: HullLocation::Found(self.find.find(cache, polyhedron)?),
+                location: HullLocation::Found(cache.find(polyhedron, epoch)?),
                 border_radius: border_radius.into(),
             },
             HullSource::Prepared(shape) => HullHandle {

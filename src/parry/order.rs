@@ -6,9 +6,9 @@ use crate::pose::{RelativePose, ValidPose};
 /// composites the shape with parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PairOrder {
-    /// The caller's first.
+    /// The caller's first shape.
     Given,
-    /// The caller's second.
+    /// The caller's second shape.
     Reversed,
 }
 

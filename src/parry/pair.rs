@@ -5,8 +5,8 @@ use parry3d::query::Unsupported;
 use parry3d::shape::{PolygonalFeatureMap, Shape, ShapeType, TypedShape};
 
 use crate::hull::Hull;
+use crate::map_pair::map_pair;
 use crate::parry::convert::{self, CurvedShape, HalfSpace};
-use crate::parry::hull_cache::Find;
 use crate::parry::hull_cache::epoch::Epoch;
 use crate::parry::operand::Operand;
 use crate::parry::order::PairOrder;
@@ -72,10 +72,10 @@ pub(crate) trait PairVisitor: Sized {
     /// What comes of it; what is [`Unsupported`] is left to parry.
     type Answer;
 
-    /// Whether it is to be asked about half-spaces.
+    /// Whether it answers half-spaces.
     const HALF_SPACES: bool = false;
 
-    /// Whether it is to be asked about cylinders and cones.
+    /// Whether it answers cylinders and cones.
     const CURVED: bool = false;
 
     /// The other shape is a polytope.
@@ -115,51 +115,42 @@ pub(crate) fn visit<V: PairVisitor>(
     shape_2: &dyn Shape,
     visitor: V,
 ) -> Result<V::Answer, Unsupported> {
-    visit_operands(
-        Operand::alone(shape_1),
-        Operand::alone(shape_2),
-        None,
-        visitor,
-    )
+    let operands = map_pair([shape_1, shape_2], Operand::new);
+    visit_operands(operands, Epoch::of_pair(), visitor)
 }
 
 /// As [`visit`], for shapes that are unchanged during `epoch`.
 // perf: in a call the operands would go through memory, which pairs that are apart notice.
 #[inline(always)]
-pub(crate) fn visit_operands<'a, 'b, V: PairVisitor>(
-    mut operand_1: Operand<'a, impl Find<'a>>,
-    mut operand_2: Operand<'b, impl Find<'b>>,
-    epoch: Option<Epoch>,
+pub(crate) fn visit_operands<V: PairVisitor>(
+    [operand_1, operand_2]: [Operand<'_>; 2],
+    epoch: Epoch,
     mut visitor: V,
 ) -> Result<V::Answer, Unsupported> {
+    let hull = |operand, order| HullOperand {
+        operand,
+        epoch,
+        order,
+    };
     match [operand_1.is_hull(), operand_2.is_hull()] {
-        [true, true] => {
-            ThreadWorkspace::with(
-                |ThreadWorkspace {
-                     hulls, workspace, ..
-                 }| {
-                    hulls.begin(epoch);
-                    let first = operand_1.prepare(hulls).ok_or(Unsupported)?;
-                    // Two colliders with one shape, which many worlds are full of, need one proof.
-                    let second = if operand_1.is_same(&operand_2) {
-                        first
-                    } else {
-                        operand_2.prepare(hulls).ok_or(Unsupported)?
-                    };
-                    let pair = Pair {
-                        hull: first.hull(hulls).ok_or(Unsupported)?,
-                        other: second.hull(hulls).ok_or(Unsupported)?,
-                        border_radii: [first.border_radius, second.border_radius],
-                        order: PairOrder::Given,
-                    };
-                    visitor.visit(&pair, workspace)
-                },
-            )
-        }
-        [true, false] => HullOperand::new(&mut operand_1, epoch, PairOrder::Given)
-            .visit(operand_2.shape, &mut visitor),
-        [false, true] => HullOperand::new(&mut operand_2, epoch, PairOrder::Reversed)
-            .visit(operand_1.shape, &mut visitor),
+        [true, true] => ThreadWorkspace::with(
+            |ThreadWorkspace {
+                 hulls, workspace, ..
+             }| {
+                hulls.begin();
+                let first = operand_1.prepare(hulls, epoch).ok_or(Unsupported)?;
+                let second = operand_2.prepare(hulls, epoch).ok_or(Unsupported)?;
+                let pair = Pair {
+                    hull: first.hull(hulls).ok_or(Unsupported)?,
+                    other: second.hull(hulls).ok_or(Unsupported)?,
+                    border_radii: [first.border_radius, second.border_radius],
+                    order: PairOrder::Given,
+                };
+                visitor.visit(&pair, workspace)
+            },
+        ),
+        [true, false] => hull(operand_1, PairOrder::Given).visit(operand_2.shape, &mut visitor),
+        [false, true] => hull(operand_2, PairOrder::Reversed).visit(operand_1.shape, &mut visitor),
         [false, false] => Err(Unsupported),
     }
 }
@@ -171,9 +162,13 @@ pub(crate) fn why_left(pos12: &Pose, shapes: [&dyn Shape; 2]) -> Left {
         return Left::NotFinite;
     }
     let is_prepared = |shape| {
-        let mut operand = Operand::alone(shape);
-        !operand.is_hull()
-            || ThreadWorkspace::with(|thread| operand.prepare(&mut thread.hulls).is_some())
+        let operand = Operand::new(shape);
+        let is_found = |thread: &mut ThreadWorkspace| {
+            operand
+                .prepare(&mut thread.hulls, Epoch::of_pair())
+                .is_some()
+        };
+        !operand.is_hull() || ThreadWorkspace::with(is_found)
     };
     if shapes.into_iter().all(is_prepared) {
         Left::OtherShape
@@ -183,26 +178,17 @@ pub(crate) fn why_left(pos12: &Pose, shapes: [&dyn Shape; 2]) -> Left {
 }
 
 /// A hull, and where in its pair it is. It is not looked up before the other shape is known.
-struct HullOperand<'s, 'a, F> {
-    operand: &'s mut Operand<'a, F>,
-    epoch: Option<Epoch>,
+struct HullOperand<'a> {
+    operand: Operand<'a>,
+    epoch: Epoch,
     order: PairOrder,
 }
 
-impl<'s, 'a, F: Find<'a>> HullOperand<'s, 'a, F> {
-    #[inline]
-    fn new(operand: &'s mut Operand<'a, F>, epoch: Option<Epoch>, order: PairOrder) -> Self {
-        Self {
-            operand,
-            epoch,
-            order,
-        }
-    }
-
+impl HullOperand<'_> {
     /// Visits the hull and another shape, if that is known, and neither too flat nor too small.
     #[inline(never)]
     fn visit<V: PairVisitor>(
-        &mut self,
+        &self,
         other: &dyn Shape,
         visitor: &mut V,
     ) -> Result<V::Answer, Unsupported> {
@@ -260,7 +246,7 @@ impl<'s, 'a, F: Find<'a>> HullOperand<'s, 'a, F> {
 
     #[inline]
     fn polytope<V: PairVisitor>(
-        &mut self,
+        &self,
         other: &impl Polytope,
         border_radius: Real,
         visitor: &mut V,
@@ -272,7 +258,7 @@ impl<'s, 'a, F: Find<'a>> HullOperand<'s, 'a, F> {
 
     #[inline]
     fn curved<V: PairVisitor>(
-        &mut self,
+        &self,
         other: &(impl CurvedShape + PolygonalFeatureMap),
         border_radius: Real,
         visitor: &mut V,
@@ -286,7 +272,7 @@ impl<'s, 'a, F: Find<'a>> HullOperand<'s, 'a, F> {
     /// Hands over the hull together with the other shape.
     #[inline]
     fn with<B, T>(
-        &mut self,
+        &self,
         other: &B,
         border_radius: Real,
         visit: impl FnOnce(&Pair<'_, B>, &mut Workspace) -> Result<T, Unsupported>,
@@ -295,8 +281,8 @@ impl<'s, 'a, F: Find<'a>> HullOperand<'s, 'a, F> {
             |ThreadWorkspace {
                  hulls, workspace, ..
              }| {
-                hulls.begin(self.epoch);
-                let prepared = self.operand.prepare(hulls).ok_or(Unsupported)?;
+                hulls.begin();
+                let prepared = self.operand.prepare(hulls, self.epoch).ok_or(Unsupported)?;
                 let pair = Pair {
                     hull: prepared.hull(hulls).ok_or(Unsupported)?,
                     other,

@@ -3,8 +3,8 @@
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, Unsupported};
 
+use crate::map_pair::map_pair;
 use crate::parry::constraints::Constraints;
-use crate::parry::hull_cache::Find;
 use crate::parry::hull_cache::epoch::Epoch;
 use crate::parry::manifold::UpdateManifold;
 use crate::parry::operand::Operand;
@@ -16,7 +16,7 @@ pub(crate) struct Updater<'a, F> {
     pub fallback: &'a F,
     pub stats: &'a SharedStats,
     /// In which the shapes are unchanged.
-    pub epoch: Option<Epoch>,
+    pub epoch: Epoch,
 }
 
 impl<F> Clone for Updater<'_, F> {
@@ -31,10 +31,10 @@ impl<F> Updater<'_, F> {
     /// Brings the manifold of two convex shapes up to date.
     // perf: in a call the operands would go through memory, which pairs that are apart notice.
     #[inline(always)]
-    pub fn update<'a, 'b, M, C>(
+    pub fn update<M, C>(
         self,
         pos12: &Pose,
-        (operand_1, operand_2): (Operand<'a, impl Find<'a>>, Operand<'b, impl Find<'b>>),
+        operands: [Operand<'_>; 2],
         constraints: [Constraints<'_>; 2],
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
@@ -44,8 +44,8 @@ impl<F> Updater<'_, F> {
         C: Default + Copy + Send + Sync,
         F: PersistentQueryDispatcher<M, C>,
     {
-        let (g1, g2) = (operand_1.shape, operand_2.shape);
-        let has_hull = operand_1.is_hull() || operand_2.is_hull();
+        let [g1, g2] = map_pair(operands, |operand| operand.shape);
+        let has_hull = operands[0].is_hull() || operands[1].is_hull();
         let update = UpdateManifold {
             pos12,
             prediction,
@@ -53,7 +53,7 @@ impl<F> Updater<'_, F> {
             manifold,
             stats: self.stats,
         };
-        if pair::visit_operands(operand_1, operand_2, self.epoch, update).is_ok() {
+        if pair::visit_operands(operands, self.epoch, update).is_ok() {
             return Ok(());
         }
         if has_hull {

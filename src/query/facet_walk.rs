@@ -22,14 +22,14 @@ const MAX_WALK: usize = 10;
 struct FacetWalk {
     /// The features that span the facet to look at.
     features: [Feature; 2],
-    /// Where these span no plane, it tells where to look.
+    /// Where to look if these span no plane.
     normal: DVec3,
     /// The side that was crossed last.
     crossed: Option<[[VertexId; 2]; 2]>,
     steps_left: usize,
-    /// That of an answer by this facet.
+    /// What an answer by this facet counts as.
     stage: Stage,
-    /// Those of answers by GJK and EPA.
+    /// What answers by GJK and EPA count as.
     from: Start,
 }
 

@@ -6,15 +6,14 @@
 //! two edges do. (On the sphere of normals: an arc of the one shape followed until it leaves the
 //! vertex's region of the other.)
 
-use crate::simd::{f64x4, u64x4};
 use glam::DVec3;
 
 use super::certificate::verdict::FacetEdge;
 use super::types::Feature;
+use crate::arg_max::{ArgMax, ArgMax4};
 use crate::map_pair::map_pair;
 use crate::pose::RelativePose;
-use crate::simd::DVec3x4;
-use crate::simd::{ArgMax, ArgMax4};
+use crate::simd::{DVec3x4, f64x4, u64x4};
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 
 /// The features of the facet across `side`. They are a proposal, to be certified. `None` where

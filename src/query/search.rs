@@ -96,6 +96,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     /// separate, GJK finds how far.
     pub(super) fn find_depth(&mut self, candidate: &Proximity, stage: Stage, from: Start) -> Found {
         let known = -candidate.signed_distance;
+        debug_assert!(known >= 0.0, "they do not overlap: {candidate:?}");
         if let Some((cache, key)) = &mut self.polytope_cache
             && cache.proves_depth(*key, self.cso, known, self.scratch, self.cost)
         {

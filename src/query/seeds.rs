@@ -35,6 +35,7 @@ impl EpaSeeds {
     }
 
     pub fn push(&mut self, point: CsoVertex) {
+        debug_assert!(self.len <= CORNERS, "more seeds than there is room for");
         self.points[self.len] = point;
         self.len += 1;
     }

@@ -99,24 +99,54 @@ fn words(line: &str) -> impl Iterator<Item = &str> {
     line.split(|c: char| !c.is_alphanumeric() && c != '_')
 }
 
+/// The reason is above the attribute, or at the head of its file for all that are in it.
 #[test]
 fn forced_inlining_has_a_reason() {
-    let found = places(|line, before| {
+    let is_note = |line: &&str| line.starts_with("// perf: ");
+    let noted: Vec<String> = files("src", "rs")
+        .into_iter()
+        .filter(|(_, text)| text.lines().take(40).any(|line| is_note(&line)))
+        .map(|(path, _)| path)
+        .collect();
+    let found: Vec<_> = places(|line, before| {
         line.contains("#[inline(always)]") && !before.iter().any(|line| line.contains("// perf:"))
-    });
-    at_most(143, "`inline(always)` without a `// perf:` note", &found);
+    })
+    .into_iter()
+    .filter(|place| !noted.iter().any(|path| place.starts_with(path)))
+    .collect();
+    at_most(68, "`inline(always)` without a `// perf:` note", &found);
 }
 
 #[test]
 fn few_files_know_simd() {
     let found = files_with(|line| line.contains("use wide::"));
-    at_most(15, "files import `wide`", &found);
+    at_most(1, "files import `wide`", &found);
 }
 
+/// What is left to parry is an error, [`Unsupported`](parry3d::query::Unsupported), not a second option.
 #[test]
 fn options_are_not_nested() {
     let found = places(|line, _| line.contains("Option<Option<"));
-    at_most(8, "nested options", &found);
+    at_most(0, "nested options", &found);
+}
+
+/// The order of the stages is written once: `Query::run_into`, and for half-spaces.
+#[test]
+fn the_pipeline_is_written_once() {
+    for (limit, word) in [
+        (2, "are_spheres_apart(self"),
+        (3, "stats.record("),
+        (0, "[Stage; 2]"),
+    ] {
+        let found = places(|line, _| line.contains(word));
+        at_most(limit, word, &found);
+    }
+}
+
+#[test]
+fn interfaces_state_what_they_expect() {
+    let found = places(|line, _| line.contains("debug_assert"));
+    assert!(found.len() >= 20, "only {} assertions", found.len());
 }
 
 #[test]

@@ -116,7 +116,7 @@ pub(crate) fn same_points(a: &[Vec3], b: &[Vec3]) -> bool {
     bytemuck::cast_slice::<Vec3, u8>(a) == bytemuck::cast_slice::<Vec3, u8>(b)
 }
 
-/// The triangles of a polyhedron, counter-clockwise from outside; `None` if they cannot be told.
+/// The triangles of a polyhedron, counter-clockwise from outside; `None` if they are ambiguous.
 pub(crate) fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
     Some(Triangulation::of(polyhedron)?.triangles)
 }

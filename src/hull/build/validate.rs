@@ -72,7 +72,7 @@ pub(super) fn center_and_radius(
 }
 
 /// No edge is a dent, beyond rounding. For a closed surface in a single layer, convexity at every
-/// edge is convexity. The answer tells which vertices belong to
+/// edge is convexity. The answer says which vertices belong to
 /// two triangles that are flat up to rounding.
 ///
 /// A dent is as deep as the edge passes beneath the other diagonal of its two triangles. (Heights

@@ -11,12 +11,8 @@ use parry3d::shape::{Compound, Shape};
 
 use crate::parry::composite::sub_manifolds::{SubManifolds, SubShape};
 use crate::parry::constraints::Constraints;
-use crate::parry::hull_cache::LastProved;
 use crate::parry::operand::Operand;
 use crate::parry::order::PairOrder;
-
-/// Of a compound with more parts than this, some prove their hulls more than once.
-const PROOFS: usize = 8;
 
 /// Two compounds.
 pub(crate) fn compounds<M, C, F>(
@@ -29,13 +25,12 @@ pub(crate) fn compounds<M, C, F>(
     F: PersistentQueryDispatcher<M, C>,
 {
     let pos21 = pos12.inverse();
-    let mut proved_2 = [LastProved::default(); PROOFS];
     let whole_2 = c2
         .local_aabb()
         .transform_by(pos12)
         .loosened(sub_manifolds.prediction);
     for i in c1.bvh().intersect_aabb(&whole_2) {
-        let mut part_1 = part(c1, i, LastProved::default());
+        let part_1 = part(c1, i);
         let near_1 = c1.aabbs()[i as usize].loosened(sub_manifolds.prediction);
         let pos_part1_2 = c1.shapes()[i as usize].0.inv_mul(pos12);
         for k in c2.bvh().intersect_aabb(&near_1.transform_by(&pos21)) {
@@ -43,11 +38,8 @@ pub(crate) fn compounds<M, C, F>(
             if !box_in(c2, k, pos12).intersects(&near_1) {
                 continue;
             }
-            let proved = &mut proved_2[k as usize % PROOFS];
-            let mut part_2 = part(c2, k, *proved);
             let pos12 = pos_part1_2 * c2.shapes()[k as usize].0;
-            sub_manifolds.update_pair(&pos12, &mut part_1, &mut part_2);
-            *proved = part_2.operand.find;
+            sub_manifolds.update_pair(&pos12, &part_1, &part(c2, k));
         }
     }
     sub_manifolds.finish();
@@ -66,10 +58,9 @@ pub(crate) fn compound_and_convex<M, C, F>(
     F: PersistentQueryDispatcher<M, C>,
 {
     let reach = sub_manifolds.reach(convex, pos12, order);
-    let mut whole = SubShape::whole(convex);
+    let whole = SubShape::whole(convex);
     for i in compound.bvh().intersect_aabb(&reach) {
-        let mut part = part(compound, i, LastProved::default());
-        sub_manifolds.update_part(pos12, &mut part, &mut whole, order);
+        sub_manifolds.update_part(pos12, &part(compound, i), &whole, order);
     }
     sub_manifolds.finish();
 }
@@ -78,12 +69,12 @@ fn box_in(compound: &Compound, part: u32, pose: &Pose) -> Aabb {
     compound.aabbs()[part as usize].transform_by(pose)
 }
 
-fn part<'a>(compound: &'a Compound, id: u32, proved: LastProved<'a>) -> SubShape<'a> {
+fn part(compound: &Compound, id: u32) -> SubShape<'_> {
     let (pos, shape) = &compound.shapes()[id as usize];
     let constraints = compound.part_normal_constraints(id);
     SubShape {
         id,
-        operand: Operand::new(&**shape, proved),
+        operand: Operand::new(&**shape),
         pos: Some(*pos),
         constraints: constraints.map_or(Constraints::None, Constraints::OfPart),
     }

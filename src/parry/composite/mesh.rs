@@ -14,7 +14,6 @@ use parry3d::shape::{
 
 use crate::parry::composite::sub_manifolds::{SubManifolds, SubShape};
 use crate::parry::constraints::Constraints;
-use crate::parry::hull_cache::LastProved;
 use crate::parry::operand::Operand;
 use crate::parry::order::PairOrder;
 
@@ -72,13 +71,13 @@ pub(crate) fn triangles_and_hull<M, C, F>(
     F: PersistentQueryDispatcher<M, C>,
 {
     let near = sub_manifolds.reach(hull, pos12, order);
-    let mut hull = SubShape::whole(hull);
+    let hull = SubShape::whole(hull);
     let is_flagged = triangles.is_flagged();
     triangles.each_near(&near, |id, triangle| {
         let normals = || triangles.normals(id);
-        let mut part = SubShape {
+        let part = SubShape {
             id,
-            operand: Operand::new(triangle, LastProved::default()),
+            operand: Operand::new(triangle),
             pos: None,
             constraints: if is_flagged {
                 Constraints::OfTriangle(&normals)
@@ -86,7 +85,7 @@ pub(crate) fn triangles_and_hull<M, C, F>(
                 Constraints::None
             },
         };
-        sub_manifolds.update_part(pos12, &mut part, &mut hull, order);
+        sub_manifolds.update_part(pos12, &part, &hull, order);
     });
     sub_manifolds.finish();
 }

@@ -41,7 +41,7 @@ where
     C: Default + Copy + Send + Sync,
     F: PersistentQueryDispatcher<M, C>,
 {
-    use ShapeType::{Ball, HeightField, TriMesh, Voxels};
+    use ShapeType::{HeightField, TriMesh, Voxels};
     // Parry's routines assert that boxes are not loosened by less than nothing.
     let prediction = prediction.max(0.0);
     let [s1, s2] = shapes;
@@ -62,22 +62,11 @@ where
         [HeightField, _] | [_, HeightField] => {
             height_field(dispatcher, pos12, shapes, prediction, manifolds, workspace)
         }
-        [Voxels, Voxels] => contact_manifolds_voxels_voxels_shapes(
-            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
-        ),
-        [Voxels, Ball] | [Ball, Voxels] => {
-            contact_manifolds_voxels_ball_shapes(pos12, s1, s2, prediction, manifolds);
-            // Parry forgets it.
-            *workspace = Some(empty_workspace());
+        [Voxels, _] | [_, Voxels] => {
+            let is_composite = composites.iter().any(Option::is_some);
+            let others = (shapes, is_composite);
+            voxels(dispatcher, pos12, others, prediction, manifolds, workspace);
         }
-        [Voxels, _] | [_, Voxels] if composites.iter().any(Option::is_some) => {
-            contact_manifolds_voxels_composite_shape_shapes(
-                dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
-            );
-        }
-        [Voxels, _] | [_, Voxels] => contact_manifolds_voxels_shape_shapes(
-            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
-        ),
         _ => match composites {
             [Some(c1), _] => contact_manifolds_composite_shape_shape(
                 dispatcher, pos12, c1, s2, prediction, manifolds, workspace, false,
@@ -115,8 +104,8 @@ pub(crate) fn reset_to_single<M: Default + Clone, C: Default + Copy>(
     }
     *workspace = (!manifolds.is_empty()).then(empty_workspace);
     manifolds.clear();
-    // A first push would make room for four, and rapier goes through all pairs in every frame: what
-    // lies densely is waited for less.
+    // A first push would make room for four. Rapier goes through all pairs in every frame, and reads
+    // dense memory faster.
     manifolds.reserve_exact(1);
     manifolds.push(ContactManifold::with_data(0, 0, M::default()));
 }
@@ -162,6 +151,37 @@ where
         }
     }
     false
+}
+
+/// Voxels against anything; one of the shapes has some, and one `is_composite` besides, or none is.
+fn voxels<M, C>(
+    dispatcher: &dyn PersistentQueryDispatcher<M, C>,
+    pos12: &Pose,
+    ([s1, s2], is_composite): ([&dyn Shape; 2], bool),
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    use ShapeType::{Ball, Voxels};
+    match [s1.shape_type(), s2.shape_type()] {
+        [Voxels, Voxels] => contact_manifolds_voxels_voxels_shapes(
+            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
+        ),
+        [Ball, _] | [_, Ball] => {
+            contact_manifolds_voxels_ball_shapes(pos12, s1, s2, prediction, manifolds);
+            // Parry forgets it.
+            *workspace = Some(empty_workspace());
+        }
+        _ if is_composite => contact_manifolds_voxels_composite_shape_shapes(
+            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
+        ),
+        _ => contact_manifolds_voxels_shape_shapes(
+            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
+        ),
+    }
 }
 
 /// A height field against anything; one of the shapes is one.

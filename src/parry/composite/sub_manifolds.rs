@@ -11,7 +11,6 @@ use parry3d::query::{ContactManifold, PersistentQueryDispatcher, TypedWorkspaceD
 use parry3d::shape::Shape;
 
 use crate::parry::constraints::Constraints;
-use crate::parry::hull_cache::LastProved;
 use crate::parry::int_hash::IntMap;
 use crate::parry::operand::Operand;
 use crate::parry::order::PairOrder;
@@ -21,7 +20,7 @@ use crate::parry::update::Updater;
 pub(crate) struct SubShape<'a> {
     /// Its number; 0 for a whole.
     pub id: u32,
-    pub operand: Operand<'a, LastProved<'a>>,
+    pub operand: Operand<'a>,
     /// Where it is in the compound.
     pub pos: Option<Pose>,
     pub constraints: Constraints<'a>,
@@ -31,7 +30,7 @@ impl<'a> SubShape<'a> {
     pub fn whole(shape: &'a dyn Shape) -> Self {
         Self {
             id: 0,
-            operand: Operand::new(shape, LastProved::default()),
+            operand: Operand::new(shape),
             pos: None,
             constraints: Constraints::None,
         }
@@ -105,18 +104,13 @@ where
     }
 
     /// Two parts, the second at `pos12` in the frame of the first.
-    pub fn update_pair(
-        &mut self,
-        pos12: &Pose,
-        part_1: &mut SubShape<'_>,
-        part_2: &mut SubShape<'_>,
-    ) {
+    pub fn update_pair(&mut self, pos12: &Pose, part_1: &SubShape<'_>, part_2: &SubShape<'_>) {
         let manifold = self.manifold(part_1, part_2);
         let constraints = [part_1.constraints, part_2.constraints];
         // As parry's routines do: a pair that nobody supports has no contacts.
         let _ = self.updater.update(
             pos12,
-            (part_1.operand.again(), part_2.operand.again()),
+            [part_1.operand, part_2.operand],
             constraints,
             self.prediction,
             &mut self.manifolds[manifold],
@@ -138,8 +132,8 @@ where
     pub fn update_part(
         &mut self,
         pos12: &Pose,
-        part: &mut SubShape<'_>,
-        whole: &mut SubShape<'_>,
+        part: &SubShape<'_>,
+        whole: &SubShape<'_>,
         order: PairOrder,
     ) {
         if order.is_reversed() {
@@ -202,6 +196,7 @@ where
 
     /// Drops the manifolds of parts that meet no more.
     pub fn finish(self) {
+        debug_assert!(self.done <= self.manifolds.len());
         self.manifolds.truncate(self.done);
     }
 }

@@ -1,6 +1,6 @@
 //! How long prepared hulls stay that nobody asks for.
 //!
-//! Age is measured in bytes: so many were prepared since a hull was used last. Where hulls come and go
+//! Age is measured in bytes: those prepared since a hull was used last. Where hulls come and go
 //! quickly, those of yesterday go quickly; where nothing comes, time passes as if a little came.
 //! Hulls that were dropped too early are noticed when they are prepared again: then all may grow older.
 

@@ -1,13 +1,28 @@
 //! Spans of time in which no shape changes: what was proved of a shape holds to their end.
 
-use std::num::NonZeroU64;
+use std::cell::Cell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// An epoch, by a number that no other one has.
-pub(crate) type Epoch = NonZeroU64;
+/// While it lasts, no shape that it covers changes. Its number is one that no other has in its thread:
+/// odd for steps, even for pairs. The default, 0, is that of no work.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Epoch(u64);
 
-/// The epoch that is under way, if there is one; clones share it.
+impl Epoch {
+    /// The update of one pair, for which its shapes are borrowed.
+    #[inline]
+    pub fn of_pair() -> Self {
+        thread_local! {
+            static PAIRS: Cell<u64> = const { Cell::new(0) };
+        }
+        let number = PAIRS.get() + 2;
+        PAIRS.set(number);
+        Self(number)
+    }
+}
+
+/// The step that is under way, if a user promised one without change; clones share it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct EpochSource(Arc<AtomicU64>);
 
@@ -24,14 +39,18 @@ impl EpochSource {
         }
         static LAST: AtomicU64 = AtomicU64::new(0);
         // Whatever shares the work with other threads also makes them see this.
-        let epoch = LAST.fetch_add(1, Ordering::Relaxed) + 1;
+        let epoch = LAST.fetch_add(2, Ordering::Relaxed) + 1;
         self.0.store(epoch, Ordering::Relaxed);
         let _end = End(&self.0);
         work()
     }
 
+    /// That of the step, or else one of a pair.
     #[inline]
-    pub fn epoch(&self) -> Option<Epoch> {
-        Epoch::new(self.0.load(Ordering::Relaxed))
+    pub fn epoch(&self) -> Epoch {
+        match self.0.load(Ordering::Relaxed) {
+            0 => Epoch::of_pair(),
+            step => Epoch(step),
+        }
     }
 }

@@ -5,8 +5,8 @@
 //! hull was built from (a `memcmp`, some 20 ns for 100 vertices; of large hulls a `Digest` of them,
 //! 130 ns for 1,000), and the edges that these points do not determine, which are those across flat sides.
 //! Equal polyhedra have an equal hull, whatever the allocator or the user did in
-//! between; the table is a pure function of the shapes, and no answer depends on its history. Where the user promises that no shape changes for
-//! a while, the first use in that epoch compares for all of them.
+//! between: the table is a pure function of the shapes, and no answer depends on its history. Only the
+//! first use in an [`Epoch`] compares: the update of one pair, or a step that the user vouches for.
 //!
 //! Each thread has a table of its own, which needs no lock; the hulls themselves are shared. Nothing
 //! says that a polyhedron is gone: its hull goes when it was not used for long ([`Aging`]).
@@ -17,7 +17,6 @@ pub(crate) mod epoch;
 pub(crate) mod registry;
 
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
 
 use parry3d::shape::ConvexPolyhedron;
 
@@ -41,11 +40,7 @@ pub(crate) struct HullCache {
     /// How many bytes there may be, and pairs until then, when room is made.
     look_at: usize,
     look_after: u32,
-    /// Which no other table has, and this one neither after references have ended.
-    state: u64,
     aging: Aging,
-    /// The epoch that is under way.
-    epoch: Option<Epoch>,
 }
 
 impl Default for HullCache {
@@ -57,16 +52,9 @@ impl Default for HullCache {
             bytes: 0,
             look_at: KEEP_BYTES as usize + LOOK_AFTER_BYTES,
             look_after: LOOK_AFTER,
-            state: new_state(),
             aging: Aging::default(),
-            epoch: None,
         }
     }
-}
-
-fn new_state() -> u64 {
-    static STATES: AtomicU64 = AtomicU64::new(0);
-    STATES.fetch_add(1, Ordering::Relaxed)
 }
 
 /// Where a polyhedron keeps its points.
@@ -78,7 +66,7 @@ struct Slot {
     /// When it was used last, by the table's `Aging`.
     used: u64,
     /// In which it was proved last.
-    epoch: Option<Epoch>,
+    epoch: Epoch,
 }
 
 impl Slot {
@@ -87,19 +75,19 @@ impl Slot {
             address,
             prepared: PreparedHull::get_or_build(polyhedron),
             used: 0,
-            epoch: None,
+            epoch: Epoch::default(),
         }
     }
 
-    /// Whether it is of the polyhedron at its address: it was proved in the epoch that is under way, or is now.
+    /// Whether it is of the polyhedron at its address: it was proved in this epoch, or is now.
     #[inline(always)]
-    fn matches(&self, polyhedron: &ConvexPolyhedron, epoch: Option<Epoch>) -> bool {
-        (epoch.is_some() && self.epoch == epoch) || self.prepared.matches(polyhedron)
+    fn matches(&self, polyhedron: &ConvexPolyhedron, epoch: Epoch) -> bool {
+        self.epoch == epoch || self.prepared.matches(polyhedron)
     }
 
     /// Marks the slot as proved again and returns a reference to its hull, if it has one.
     #[inline(always)]
-    fn proved(&mut self, place: usize, now: u64, epoch: Option<Epoch>) -> Option<HullRef> {
+    fn proved(&mut self, place: usize, now: u64, epoch: Epoch) -> Option<HullRef> {
         self.used = now;
         self.epoch = epoch;
         self.prepared.hull().is_some().then_some(HullRef(place))
@@ -120,64 +108,10 @@ impl Slot {
 #[derive(Clone, Copy)]
 pub(crate) struct HullRef(usize);
 
-/// Finds the hulls of polyhedra in the table.
-pub(crate) trait Find<'a> {
-    /// The hull of a polyhedron; `None` if it has none.
-    fn find(&mut self, cache: &mut HullCache, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef>;
-}
-
-/// Each with its proof.
-pub(crate) struct EachProved;
-
-impl<'a> Find<'a> for EachProved {
-    #[inline(always)]
-    fn find(&mut self, cache: &mut HullCache, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
-        cache.find(polyhedron)
-    }
-}
-
-impl<'a, F: Find<'a>> Find<'a> for &mut F {
-    #[inline]
-    fn find(&mut self, cache: &mut HullCache, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
-        (**self).find(cache, polyhedron)
-    }
-}
-
-/// Without another proof for the one that was proved last: it cannot have changed, it is borrowed.
-#[derive(Clone, Copy, Default)]
-pub(crate) struct LastProved<'a>(Option<Proof<'a>>);
-
-#[derive(Clone, Copy)]
-struct Proof<'a> {
-    polyhedron: &'a ConvexPolyhedron,
-    place: HullRef,
-    state: u64,
-}
-
-impl<'a> Find<'a> for LastProved<'a> {
-    #[inline]
-    fn find(&mut self, cache: &mut HullCache, polyhedron: &'a ConvexPolyhedron) -> Option<HullRef> {
-        if let Some(proof) = self.0
-            && std::ptr::eq(proof.polyhedron, polyhedron)
-            && proof.state == cache.state
-        {
-            return Some(proof.place);
-        }
-        let place = cache.find(polyhedron)?;
-        *self = Self(Some(Proof {
-            polyhedron,
-            place,
-            state: cache.state,
-        }));
-        Some(place)
-    }
-}
-
 impl HullCache {
-    /// Before hulls are looked for, which are unchanged during `epoch`. References end here.
+    /// Before the hulls of a pair are looked for. References end here.
     #[inline(always)]
-    pub fn begin(&mut self, epoch: Option<Epoch>) {
-        self.epoch = epoch;
+    pub fn begin(&mut self) {
         self.look_after -= 1;
         if self.look_after == 0 {
             self.look_after();
@@ -210,7 +144,6 @@ impl HullCache {
         if self.slots.len() == before {
             return;
         }
-        self.state = new_state();
         self.slots.shrink_to(2 * self.slots.len());
         self.recent = DirectMapped::default();
         self.entries = (self.slots.iter().enumerate())
@@ -222,27 +155,27 @@ impl HullCache {
 
     /// The hull of a polyhedron, built if it is new; `None` if it has none.
     #[inline(always)]
-    fn find(&mut self, polyhedron: &ConvexPolyhedron) -> Option<HullRef> {
+    pub fn find(&mut self, polyhedron: &ConvexPolyhedron, epoch: Epoch) -> Option<HullRef> {
         let address = polyhedron.points().as_ptr() as Address;
         let (known, place) = *self.recent.class(address);
         if known == address
             && let Some(slot) = self.slots.get_mut(place)
-            && slot.matches(polyhedron, self.epoch)
+            && slot.matches(polyhedron, epoch)
         {
-            return slot.proved(place, self.aging.now(), self.epoch);
+            return slot.proved(place, self.aging.now(), epoch);
         }
-        self.find_among_all(polyhedron)
+        self.find_among_all(polyhedron, epoch)
     }
 
     #[inline(never)]
-    fn find_among_all(&mut self, polyhedron: &ConvexPolyhedron) -> Option<HullRef> {
+    fn find_among_all(&mut self, polyhedron: &ConvexPolyhedron, epoch: Epoch) -> Option<HullRef> {
         let address = polyhedron.points().as_ptr() as Address;
         let place = match self.entries.get(&address).copied() {
-            Some(i) if self.slots[i].matches(polyhedron, self.epoch) => i,
+            Some(i) if self.slots[i].matches(polyhedron, epoch) => i,
             known => self.insert(address, polyhedron, known),
         };
         *self.recent.class(address) = (address, place);
-        self.slots[place].proved(place, self.aging.now(), self.epoch)
+        self.slots[place].proved(place, self.aging.now(), epoch)
     }
 
     #[cold]
@@ -272,6 +205,10 @@ impl HullCache {
     /// The hull at a place that [`find`](Self::find) gave.
     #[inline]
     pub fn get(&self, place: HullRef) -> Option<&Hull> {
+        debug_assert!(
+            place.0 < self.slots.len(),
+            "a reference has outlived its pair"
+        );
         self.slots.get(place.0)?.prepared.hull()
     }
 }

@@ -6,7 +6,7 @@ use parry3d::math::{Pose, Vector};
 
 use super::HullShape;
 
-/// A scan of so many points takes as long as six climbs, and its memory is no surprise.
+/// A scan of this many points takes as long as six climbs, and its memory access is predictable.
 const SCAN_UP_TO: usize = 180;
 
 impl HullShape {

@@ -14,7 +14,7 @@ use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{Cso, FaceId, Polytope, Support, VertexId};
 
-/// Of so many points the scan that parry does, in f32, is quicker than a climb.
+/// Up to this many points, a scan in f32, as parry does it, is quicker than a climb.
 const SCAN_UP_TO: usize = 40;
 
 impl Hull {

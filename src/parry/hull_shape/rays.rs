@@ -61,7 +61,7 @@ impl HullShape {
                 return None;
             }
         }
-        // A ray without a direction, or that is no number, leaves by no face.
+        // A ray whose direction is zero or NaN leaves by no face.
         (entry.time <= exit.time && (0.0..f64::INFINITY).contains(&exit.time))
             .then_some((entry, exit))
     }

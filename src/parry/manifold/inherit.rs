@@ -1,5 +1,8 @@
 //! The points of a manifold, and what they inherit from those of the frame before.
 
+// perf: values of four lanes go through memory in calls, which cost a tenth of a manifold's update
+// without link-time optimisation. So what is inlined here is inlined always.
+
 use glam::Vec3;
 use parry3d::math::Real;
 use parry3d::query::TrackedContact;
@@ -16,6 +19,11 @@ impl<M, C: Default + Copy> KernelManifold<'_, M, C> {
     /// Replaces the contacts, and hands the data (the solver's impulses) of the old ones on.
     #[inline(always)]
     pub fn set_contacts(&mut self, normals: [Vec3; 2], contacts: &Contacts) {
+        debug_assert!(contacts.len <= MAX_POINTS, "{contacts:?}");
+        debug_assert!(
+            contacts.iter().all(|contact| contact.distance.is_finite()),
+            "{contacts:?}"
+        );
         self.set_normals(normals);
         self.replace_points(normals, contacts);
     }
@@ -104,7 +112,7 @@ impl ManifoldPoints {
 struct FeatureKeys([u32x4; 2]);
 
 impl FeatureKeys {
-    /// Of a manifold; of contacts that it could have beside its own, nothing.
+    /// Of the contacts of a manifold. Lanes beyond the last one have none.
     #[inline(always)]
     fn of<C>(contacts: &[TrackedContact<C>]) -> Self {
         if let Some([a, b, c, d]) = contacts.first_chunk() {
@@ -119,9 +127,10 @@ impl FeatureKeys {
         Self::new([first, second], contacts.len())
     }
 
-    /// From the packed features of so many; of the others, nothing.
+    /// From the packed features of the first `count` contacts. The others have none.
     #[inline(always)]
     fn new([first, second]: [[u32; MAX_POINTS]; 2], count: usize) -> Self {
+        debug_assert!(count <= MAX_POINTS, "{count} contacts");
         let counted = u32x4::new([0, 1, 2, 3]).simd_lt(u32x4::splat(count as u32));
         let features = map_pair([first, second], |row| u32x4::new(row) & counted);
         Self(record::feature_keys(features))
@@ -151,7 +160,7 @@ const NONE: usize = MAX_POINTS;
 
 /// For each new contact the old one whose data it takes over: that between the same features. What
 /// is left over goes to the nearest of the others, however far: an impulse in a wrong place of the
-/// patch is a better start for the solver than a body that is borne by three contacts of four.
+/// patch is a better start for the solver than a body that rests on three contacts of four.
 /// (Of another dispatcher's manifold no more points than ours have hand their data on.)
 fn match_old_points<C>(
     old: &[TrackedContact<C>],

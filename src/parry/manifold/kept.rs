@@ -8,7 +8,7 @@
 //! The query of the present step vouches for what is kept. Its normal `n` and its signed distance `d`
 //! are exact: along `n` the shapes lie on either side of two supporting planes that are `d` apart.
 //! So no pair of points is deeper than `d`, and a kept contact never shows an overlap that does not
-//! exist. The deepest kept contact must show `d` itself, up to a tolerance, and is then told at `d`;
+//! exist. The deepest kept contact must show `d` itself, up to a tolerance, and is then reported at `d`;
 //! otherwise the contacts are chosen anew.
 
 use glam::{DVec3, Vec3};

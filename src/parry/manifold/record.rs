@@ -2,7 +2,7 @@
 //!
 //! Manifolds are saved, cloned and pooled with the world, reach the parts of composite shapes,
 //! and cost rapier nothing; a workspace would make it rebuild its solver graph every step. So
-//! the memory is written where the manifold has room, in words that mean what they say:
+//! the memory is in fields of the manifold that are free:
 //!
 //! - without points, `local_n1` is the separating axis (parry's own habit) in an [`AxisFrame`], and
 //!   `local_n2`, which nobody reads then, holds the two extreme vertices as whole numbers; of a pair
@@ -12,6 +12,9 @@
 //!
 //! What another dispatcher or a different pair left there is as good as any other hint.
 
+// perf: values of four lanes go through memory in calls, which cost a tenth of a manifold's update
+// without link-time optimisation. So what is inlined here is inlined always.
+
 use glam::{DVec3, Vec3};
 use parry3d::math::Rotation;
 use parry3d::query::{ContactManifold, TrackedContact};
@@ -20,13 +23,13 @@ use parry3d::shape::PackedFeatureId;
 use crate::map_pair::map_pair;
 use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
-use crate::pose::RelativePose;
+use crate::pose::{RelativePose, is_unit};
 use crate::query::{Feature, PairMemory};
 use crate::simd::u32x4;
 use crate::support::{Cso, Support, VertexId};
 use crate::tolerance::NEARLY_UNIT;
 
-/// Of which shape's frame a pair keeps its separating axis.
+/// In which shape's frame a pair keeps its separating axis.
 #[derive(Clone, Copy)]
 pub(super) enum AxisFrame<'a> {
     /// The kernels' first shape.
@@ -36,8 +39,8 @@ pub(super) enum AxisFrame<'a> {
 }
 
 impl<'a> AxisFrame<'a> {
-    /// That of the larger shape. Where sizes differ it is mostly the small one that tumbles, over a
-    /// floor or along a wall, and seen from these the axis stays where it is.
+    /// That of the larger shape. Where sizes differ, mostly the small shape tumbles, over a floor or along
+    /// a wall, and seen from these the axis stays where it is.
     #[inline]
     pub fn of<A: Support, B: Support>(cso: &Cso<'a, A, B>) -> Self {
         if cso.shape_2.radius() > cso.shape_1.radius() {
@@ -125,9 +128,15 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
     /// Leaves an axis and extreme vertices in a manifold without points.
     #[inline(always)]
     pub fn set_axis(&mut self, axis: DVec3, vertices: [VertexId; 2]) {
+        debug_assert!(is_unit(axis), "no unit vector: {axis}");
+        debug_assert!(
+            vertices
+                .iter()
+                .all(|&vertex| vertex < 1 << f32::MANTISSA_DIGITS)
+        );
         self.manifold.points.clear();
         self.manifold.local_n1 = self.frame.to_stored(axis).as_vec3();
-        // Of f32 whole numbers up to 2^24 are exact.
+        // Whole numbers up to 2^24 are exact in f32.
         self.manifold.local_n2 = Vec3::new(vertices[0] as f32, vertices[1] as f32, 0.0);
     }
 
@@ -184,6 +193,8 @@ const FACE: u32 = 0b11 << 30;
 /// As parry packs feature ids; its own constructors are not inlined across crates.
 #[inline]
 pub(super) fn pack(feature: Feature) -> PackedFeatureId {
+    let (Feature::Vertex(id) | Feature::Edge(id) | Feature::Face(id)) = feature;
+    debug_assert_eq!(id & KIND, 0, "an id of too many bits");
     PackedFeatureId(match feature {
         Feature::Vertex(v) => VERTEX | v,
         Feature::Edge(e) => EDGE | e,

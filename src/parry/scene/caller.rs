@@ -6,7 +6,7 @@ use parry3d::query::Contact;
 
 use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
-use crate::pose::RelativePose;
+use crate::pose::{RelativePose, is_unit};
 use crate::query::{Proximity, SeparatingAxis, Sink};
 
 /// The nearest points of a pair, its rounded borders accounted for. Normals and points are in
@@ -48,6 +48,7 @@ impl<'a> KernelFrame<'a> {
 
     /// From the normal and the points of the cores, in the frame of the hull.
     pub fn near(&self, normal: DVec3, [on_1, on_2]: [DVec3; 2], distance: f64) -> CallerProximity {
+        debug_assert!(is_unit(normal), "no unit vector: {normal}");
         let normals = [normal, -self.pose.direction_to_2(normal)];
         let points = [on_1, self.pose.point_to_2(on_2)];
         let points = [0, 1].map(|i| points[i] + normals[i] * self.border_radii[i]);

@@ -2,7 +2,7 @@
 //!
 //! A pair of features spans a facet of the Minkowski difference: a face and a vertex, or two
 //! edges that cross. Re-evaluated at the present poses it is again a polygon inside of the
-//! Minkowski difference. One support pair along its normal tells whether its plane supports the
+//! Minkowski difference. One support pair along its normal shows whether its plane supports the
 //! difference: then its signed distance from the origin bounds the true one from one side. From
 //! the other side,
 //!
@@ -195,23 +195,13 @@ impl FacetTest {
         let [a0, a1] = map_pair(ends_1, |v| cso.shape_1.vertex(v));
         let [b0, b1] = map_pair(ends_2, |v| cso.pose.point_to_1(cso.shape_2.vertex(v)));
         let (along_1, along_2) = (a1 - a0, b1 - b0);
-        let cross = along_1.cross(along_2);
-        let area_squared = cross.length_squared();
-        let lengths = along_1.length_squared() * along_2.length_squared();
-        let crossing_angle = area_squared.partial_cmp(&(PARALLEL_EDGES * lengths));
-        if crossing_angle != Some(Ordering::Greater) {
+        let (center, offset) = (cso.center(), a0 - b0);
+        let Some(plane) = EdgePlane::new(along_1, along_2, offset - center) else {
             return Verdict::Degenerate;
-        }
-        let center = cso.center();
-        let offset = a0 - b0;
-        let outward = if cross.dot(offset - center) >= 0.0 {
-            1.0
-        } else {
-            -1.0
         };
-        let normal = cross * (outward / area_squared.sqrt());
+        let normal = plane.normal;
         // Before a vertex is searched for: whether or not the two edges still span a facet, it is left.
-        let vertices = parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], outward > 0.0);
+        let vertices = parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], plane.is_along_cross);
         let corners = vertices.iter().map(|vertex| vertex.w);
         let [s, t] = crossing(offset, along_1, along_2);
         let is_inside = (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t);
@@ -243,11 +233,7 @@ impl FacetTest {
         };
         let depth = -signed_distance - self.tolerance;
         // The sides of the parallelogram are along the edges.
-        let length = along_1
-            .length_squared()
-            .max(along_2.length_squared())
-            .sqrt();
-        let inset = s.min(1.0 - s).min(t).min(1.0 - t) * area_squared.sqrt() / length;
+        let inset = s.min(1.0 - s).min(t).min(1.0 - t) * plane.least_height;
         if signed_distance >= 0.0
             || cone_contains_ball(inset, depth, center, normal)
             || pyramid_contains_ball(corners, center, depth)
@@ -255,6 +241,38 @@ impl FacetTest {
             return Verdict::Certified(proximity);
         }
         Verdict::Undecided(proximity)
+    }
+}
+
+/// The plane of the facet that two edges span.
+struct EdgePlane {
+    /// Out of the difference.
+    normal: DVec3,
+    /// The normal is along the cross product of the edges' directions, not against it.
+    is_along_cross: bool,
+    /// The lesser height of the parallelogram.
+    least_height: f64,
+}
+
+impl EdgePlane {
+    /// `None` for edges that are parallel. `outward` is any vector from inside of the difference to the facet.
+    #[inline]
+    fn new(along_1: DVec3, along_2: DVec3, outward: DVec3) -> Option<Self> {
+        let cross = along_1.cross(along_2);
+        let area_squared = cross.length_squared();
+        let (squared_1, squared_2) = (along_1.length_squared(), along_2.length_squared());
+        let angle = area_squared.partial_cmp(&(PARALLEL_EDGES * (squared_1 * squared_2)));
+        if angle != Some(Ordering::Greater) {
+            return None;
+        }
+        let area = area_squared.sqrt();
+        let is_along_cross = cross.dot(outward) >= 0.0;
+        let sign = if is_along_cross { 1.0 } else { -1.0 };
+        Some(Self {
+            normal: cross * (sign / area),
+            is_along_cross,
+            least_height: area / squared_1.max(squared_2).sqrt(),
+        })
     }
 }
 

@@ -52,7 +52,7 @@ pub(in crate::query) fn contains_ball<A: Polytope, B: Polytope>(
 struct Pyramids {
     apex: DVec3,
     radius: f64,
-    /// Facets no farther than this from the apex have no pyramid that can be told from a flat one.
+    /// The pyramid of a facet no farther than this from the apex counts as flat.
     tolerance: f64,
 }
 

@@ -45,7 +45,7 @@ pub(in crate::query) fn inset(
         let inward_z = y * normal.x - x * normal.y;
         let squared = inward_x * inward_x + inward_y * inward_y + inward_z * inward_z;
         let height = -(inward_x * from_x + inward_y * from_y + inward_z * from_z) / squared.sqrt();
-        // Of a side without length the height is no number.
+        // The height over a side without length is NaN.
         is_inside &= height.simd_gt(f32x4::ZERO);
         least = least.fast_min(height);
     }

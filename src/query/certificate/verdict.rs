@@ -1,10 +1,10 @@
-//! What features turned out to prove, and where to go on from.
+//! What a pair of features proves, and where the walk goes on.
 
 use glam::DVec3;
 
 use crate::gjk::SeparatingAxis;
 use crate::map_pair::map_pair;
-use crate::pose::RelativePose;
+use crate::pose::{RelativePose, is_unit};
 use crate::query::types::Proximity;
 use crate::support::{CsoVertex, VertexId};
 
@@ -40,6 +40,7 @@ impl FacetEdge {
     /// From one vertex to the next, which is `along` away.
     #[inline]
     pub(in crate::query) fn new(ends: [[VertexId; 2]; 2], along: DVec3, normal: DVec3) -> Self {
+        debug_assert!(is_unit(normal), "no unit vector: {normal}");
         Self {
             ends,
             normal,

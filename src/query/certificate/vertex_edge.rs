@@ -51,7 +51,7 @@ pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
     }
 }
 
-/// The ends of an edge; a vertex twice. What the shape has not, a memory of another one, has none.
+/// The ends of an edge, or a vertex twice. `None` for a feature of another shape, remembered from before.
 fn ends(shape: &impl Polytope, feature: Feature) -> Option<[VertexId; 2]> {
     match feature {
         Feature::Vertex(vertex) => (shape.clamp_vertex(vertex) == vertex).then_some([vertex; 2]),
@@ -64,7 +64,7 @@ fn ends(shape: &impl Polytope, feature: Feature) -> Option<[VertexId; 2]> {
 fn nearest([a, b]: [DVec3; 2], p: DVec3) -> DVec3 {
     let along = b - a;
     let share = (p - a).dot(along) / along.length_squared();
-    // Of a single point the share is no number.
+    // For a single point the share is NaN.
     if share > 0.0 {
         a + along * share.min(1.0)
     } else {
