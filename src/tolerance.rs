@@ -25,6 +25,11 @@ pub const FACE_ANGLE_COS: f64 = COS_1_DEGREE;
 /// stay below it, and the facets of round hulls of a thousand vertices above.
 pub const CLUSTER_ANGLE_COS: f64 = COS_1_DEGREE;
 
+/// Faces and clusters are sought only over edges that bend by less than 4 degrees (cosine). No others
+/// can be inside of one: the normal of a triangle is within 1 degree of its face's, and that within
+/// 1 degree of its cluster's.
+pub const NEARLY_FLAT_COS: f64 = 0.997_564;
+
 /// A triangle lower than this share of the radius is a sliver: rounding of its corners can turn
 /// its plane by several degrees.
 pub const MIN_TRIANGLE_HEIGHT: f64 = 4e-6;

@@ -12,16 +12,19 @@ use crate::tolerance::CLUSTER_ANGLE_COS;
 /// faces. What is left of a larger flat region becomes a cluster beside it.
 const MAX_MEMBERS: usize = 64;
 
-/// Grows clusters from the largest faces.
+/// Grows clusters from these faces, the largest first.
 pub(in crate::hull) fn grow_clusters(
     points: &[DVec3],
     faces: &Faces,
     graph: &EdgeGraph,
-    largest_first: &[u16],
+    seeds: &[u16],
 ) -> Vec<FaceCluster> {
-    let mut taken = vec![false; faces.len()];
     let mut clusters = Vec::new();
-    for &seed in largest_first {
+    if seeds.is_empty() {
+        return clusters;
+    }
+    let mut taken = vec![false; faces.len()];
+    for &seed in seeds {
         let plane = SeedPlane::of(points, faces, seed.into());
         if taken[usize::from(seed)] || plane.normal == DVec3::ZERO {
             continue;

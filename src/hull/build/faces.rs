@@ -2,62 +2,27 @@
 
 use std::{iter, mem};
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::clusters::grow_clusters;
-use super::half_edge::{HalfEdge, HalfEdgeMesh};
+use super::face_plane::{FacePlane, polygon_normal};
+use super::flat_edges::{AreaVectors, NearlyFlatEdges};
+use super::half_edge::{HalfEdge, HalfEdgeMesh, triangle};
 use super::regions::CoplanarRegions;
 use crate::hull::clusters::FaceClusters;
 use crate::hull::faces::{FaceCorner, FaceRecord, Faces, IN_CLUSTER, NO_EDGE};
 use crate::hull::graph::EdgeGraph;
+use crate::support::FaceId;
 use crate::tolerance::FACE_FLATNESS;
 
 /// What became of triangles.
 pub(in crate::hull) struct MergedFaces {
     /// The face that each of them went to.
     pub face_of: Vec<u16>,
-    /// The faces by their largest triangles.
-    largest_first: Vec<u16>,
-}
-
-/// A supporting plane.
-struct FacePlane {
-    normal: Vec3,
-    offset: f64,
-}
-
-impl FacePlane {
-    /// That of a sliver whose direction is rounding only: no plane of the hull, and farther out
-    /// than any. Outlines have none either.
-    const NONE: Self = Self {
-        normal: Vec3::ZERO,
-        offset: f64::INFINITY,
-    };
-
-    /// Through the outermost of the polygon's corners and their neighbours: on a convex hull no
-    /// vertex is farther out.
-    fn new(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, polygon: &[HalfEdge], radius: f64) -> Self {
-        let normal = polygon_normal(points, mesh, polygon).as_vec3();
-        let direction = normal.as_dvec3();
-        let height = |v: u32| direction.dot(points[v as usize]);
-        let (mut lowest, mut offset) = (f64::INFINITY, f64::NEG_INFINITY);
-        for &side in polygon {
-            let corner = mesh.start(side);
-            let level = height(corner);
-            lowest = lowest.min(level);
-            offset = offset.max(level);
-            for side in mesh.outgoing(corner) {
-                let level = height(side.to.into());
-                // No value is NaN here, so the NaN check of `f64::max` is not needed.
-                offset = if level > offset { level } else { offset };
-            }
-        }
-        if offset - lowest > 2.0 * FACE_FLATNESS * radius {
-            Self::NONE
-        } else {
-            Self { normal, offset }
-        }
-    }
+    /// The faces that may have others beside them in a cluster, by their largest triangles.
+    seeds: Vec<u16>,
+    /// The faces that have a vertex beside them higher than one of their corners.
+    pub overtopped: Vec<u16>,
 }
 
 impl Faces {
@@ -65,19 +30,26 @@ impl Faces {
     /// those around a vertex lie together where triangles do.
     pub fn new(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, radius: f64) -> (Self, MergedFaces) {
         let count = mesh.triangles.len();
-        let regions = CoplanarRegions::grow(points, mesh, radius);
+        let surface = AreaVectors::new(points, mesh.triangles, radius);
+        let flat = NearlyFlatEdges::new(mesh, &surface);
+        let regions = CoplanarRegions::grow(points, mesh, &surface, &flat, radius);
         let mut face_of = vec![0_u16; count];
+        let mut overtopped = Vec::new();
         let mut faces = Builder::with_capacity(count);
         let mut faces_of = vec![0..0; regions.len()];
         let mut add = |polygon: &[HalfEdge], triangles: &[u32]| {
+            let face = faces.polygons.len() as u16;
             for &t in triangles {
-                face_of[t as usize] = faces.polygons.len() as u16;
+                face_of[t as usize] = face;
             }
             let corner = |&side: &HalfEdge| FaceCorner {
                 vertex: mesh.start(side) as u16,
                 slot: mesh.edge_slot(side),
             };
             let plane = FacePlane::new(points, mesh, polygon, radius);
+            if plane.is_overtopped {
+                overtopped.push(face);
+            }
             faces.add(&plane, polygon.iter().map(corner));
         };
         let mut polygon = Vec::new();
@@ -103,19 +75,41 @@ impl Faces {
             }
             faces_of[r as usize] = first..face_count;
         }
+        let faces = faces.finish(face_count.into(), FaceClusters::default());
+        let mut seeds: Vec<u16> = Vec::new();
+        if !flat.is_empty() {
+            let may_grow = faces.with_flat_border(mesh, &flat, &face_of);
+            seeds.extend(faces_of.into_iter().flatten());
+            seeds.retain(|&face| may_grow[usize::from(face)]);
+        }
         let merged = MergedFaces {
             face_of,
-            largest_first: faces_of.into_iter().flatten().collect(),
+            seeds,
+            overtopped,
         };
-        (
-            faces.finish(face_count.into(), FaceClusters::default()),
-            merged,
-        )
+        (faces, merged)
+    }
+
+    /// Whether each face has an edge to another one that is nearly flat.
+    fn with_flat_border(
+        &self,
+        mesh: &HalfEdgeMesh<'_>,
+        flat: &NearlyFlatEdges,
+        face_of: &[u16],
+    ) -> Vec<bool> {
+        // Without a plane a face may join any cluster.
+        let has_planes = (0..self.len() as FaceId).all(|face| self.normal(face) != DVec3::ZERO);
+        let mut may_grow = vec![!has_planes; self.len()];
+        for h in (0..3 * face_of.len() as HalfEdge).filter(|&h| flat.contains(h)) {
+            let [here, beyond] = [h, mesh.twin(h)].map(|h| face_of[triangle(h)]);
+            may_grow[usize::from(here)] |= here != beyond;
+        }
+        may_grow
     }
 
     /// Finds the clusters, when the `graph` knows the faces.
     pub fn add_clusters(&mut self, points: &[DVec3], graph: &EdgeGraph, merged: &MergedFaces) {
-        let clusters = grow_clusters(points, self, graph, &merged.largest_first);
+        let clusters = grow_clusters(points, self, graph, &merged.seeds);
         if clusters.is_empty() {
             return;
         }
@@ -175,16 +169,6 @@ impl Builder {
             clusters,
         }
     }
-}
-
-/// The area vector of a polygon, normalised (Newell's method, about its first vertex).
-fn polygon_normal(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, polygon: &[HalfEdge]) -> DVec3 {
-    let at = |i: usize| points[mesh.start(polygon[i]) as usize];
-    let origin = at(0);
-    let sum: DVec3 = (1..polygon.len() - 1)
-        .map(|i| (at(i) - origin).cross(at(i + 1) - origin))
-        .sum();
-    sum.normalize_or(DVec3::Z)
 }
 
 /// Whether no corner is a dent, beyond rounding.

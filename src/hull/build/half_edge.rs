@@ -5,10 +5,9 @@ use crate::hull::HullError;
 /// A side of a triangle, from one vertex to the next: number `3 t + k` is side `k` of triangle `t`.
 pub(in crate::hull) type HalfEdge = u32;
 
-/// A half-edge with its ends.
+/// A half-edge with its end.
 #[derive(Clone, Copy, Default)]
 pub(in crate::hull) struct DirectedEdge {
-    pub from: u16,
     pub to: u16,
     pub half_edge: HalfEdge,
 }
@@ -28,33 +27,18 @@ pub(in crate::hull) struct HalfEdgeMesh<'a> {
 impl<'a> HalfEdgeMesh<'a> {
     /// From triangles over `count` vertices, of which there are no more than 16 bits can name.
     pub fn new(count: usize, triangles: &'a [[u32; 3]]) -> Result<Self, HullError> {
-        let all = directed_edges(triangles);
-        let (by_end, _) = sort(&all, count, |side| side.to);
-        let (sides, first) = sort(&by_end, count, |side| side.from);
+        let (sides, first) = sides_by_start(triangles, count);
         if let Some(loose) = first.windows(2).position(|pair| pair[0] == pair[1]) {
             return Err(HullError::LooseVertex(loose));
         }
-        // Reversed, they come in the same order, if each side has one reverse.
-        let (by_start, _) = sort(&all, count, |side| side.from);
-        let (reversed, _) = sort(&by_start, count, |side| side.to);
-        let mut twin = vec![0; all.len()];
-        let mut before = None;
-        for (side, reverse) in sides.iter().zip(&reversed) {
-            let ends = (side.from, side.to);
-            if ends != (reverse.to, reverse.from) || before == Some(ends) {
-                return Err(HullError::NotManifold);
-            }
-            before = Some(ends);
-            twin[side.half_edge as usize] = reverse.half_edge;
-        }
         let mut mesh = Self {
             triangles,
+            position: vec![0; sides.len()],
+            twin: vec![0; sides.len()],
             sides,
             first,
-            position: vec![0; all.len()],
-            twin,
         };
-        if mesh.sort_around_vertices() && mesh.is_sphere() {
+        if mesh.pair_twins() && mesh.sort_around_vertices() && mesh.is_sphere() {
             Ok(mesh)
         } else {
             Err(HullError::NotManifold)
@@ -99,19 +83,41 @@ impl<'a> HalfEdgeMesh<'a> {
         (self.position[outgoing as usize] - self.first[self.start(outgoing) as usize]) as u16
     }
 
+    /// Finds the twin of each side. `false` if one has none, or several.
+    fn pair_twins(&mut self) -> bool {
+        const NOWHERE: u32 = u32::MAX;
+        // Of the vertex at hand, the side that leaves it to each neighbour; and whose it is.
+        let mut side_to = vec![(NOWHERE, 0); self.vertex_count()];
+        (0..self.vertex_count() as u32).all(|v| {
+            let outgoing = self.first[v as usize] as usize..self.first[v as usize + 1] as usize;
+            let is_single = self.sides[outgoing.clone()].iter().all(|side| {
+                let place = &mut side_to[usize::from(side.to)];
+                std::mem::replace(place, (v, side.half_edge)).0 != v
+            });
+            // The side before an outgoing one in its triangle is an incoming one.
+            is_single
+                && outgoing.into_iter().all(|place| {
+                    let incoming = previous(self.sides[place].half_edge);
+                    let (owner, twin) = side_to[self.start(incoming) as usize];
+                    self.twin[incoming as usize] = twin;
+                    owner == v
+                })
+        })
+    }
+
     /// Brings the sides around each vertex into their order, from that to the lowest vertex on.
     /// `false` if the triangles around a vertex are not one fan.
     fn sort_around_vertices(&mut self) -> bool {
         (0..self.vertex_count()).all(|v| {
             let [start, end] = [v, v + 1].map(|v| self.first[v] as usize);
-            let first = self.sides[start].half_edge;
+            let lowest = self.sides[start..end].iter().min_by_key(|side| side.to);
+            let first = lowest.map_or(0, |side| side.half_edge);
             let mut h = first;
             for place in start..end {
                 if h == first && place > start {
                     return false;
                 }
                 self.sides[place] = DirectedEdge {
-                    from: v as u16,
                     to: self.end(h) as u16,
                     half_edge: h,
                 };
@@ -150,42 +156,38 @@ pub(in crate::hull) fn next(h: HalfEdge) -> HalfEdge {
     if h % 3 == 2 { h - 2 } else { h + 1 }
 }
 
+/// The side before it in the same triangle.
+#[inline]
+fn previous(h: HalfEdge) -> HalfEdge {
+    if h.is_multiple_of(3) { h + 2 } else { h - 1 }
+}
+
 #[inline]
 pub(in crate::hull) fn triangle(h: HalfEdge) -> usize {
     h as usize / 3
 }
 
-fn directed_edges(triangles: &[[u32; 3]]) -> Vec<DirectedEdge> {
-    let sides =
-        |(t, &[a, b, c]): (HalfEdge, &[u32; 3])| [(a, b), (b, c), (c, a)].into_iter().zip(3 * t..);
-    let side = |((from, to), half_edge): ((u32, u32), HalfEdge)| DirectedEdge {
-        from: from as u16,
-        to: to as u16,
-        half_edge,
-    };
-    (0..).zip(triangles).flat_map(sides).map(side).collect()
-}
-
-/// The sides by a vertex of theirs, otherwise in the order given (a counting sort), and where
-/// those of each vertex begin.
-fn sort(
-    sides: &[DirectedEdge],
-    count: usize,
-    vertex: impl Fn(&DirectedEdge) -> u16,
-) -> (Vec<DirectedEdge>, Vec<u32>) {
-    let mut first = vec![0; count + 1];
-    for side in sides {
-        first[usize::from(vertex(side)) + 1] += 1;
+/// The sides of all triangles by the vertex that they leave (a counting sort), and where those of
+/// each vertex begin.
+fn sides_by_start(triangles: &[[u32; 3]], count: usize) -> (Vec<DirectedEdge>, Vec<u32>) {
+    let starts = triangles.as_flattened();
+    // One place further on, so that filling moves each to where its own begin.
+    let mut first = vec![0; count + 2];
+    for &from in starts {
+        first[from as usize + 2] += 1;
     }
-    for v in 0..count {
-        first[v + 1] += first[v];
+    for v in 2..first.len() {
+        first[v] += first[v - 1];
     }
-    let mut fill = first.clone();
-    let mut sorted = vec![DirectedEdge::default(); sides.len()];
-    for side in sides {
-        let place = &mut fill[usize::from(vertex(side))];
-        sorted[*place as usize] = *side;
+    let mut sides = vec![DirectedEdge::default(); starts.len()];
+    for (half_edge, &from) in (0..).zip(starts) {
+        let place = &mut first[from as usize + 1];
+        sides[*place as usize] = DirectedEdge {
+            to: starts[next(half_edge) as usize] as u16,
+            half_edge,
+        };
         *place += 1;
     }
-    (sorted, first)
+    first.pop();
+    (sides, first)
 }

@@ -1,7 +1,9 @@
 //! Building hulls: from points, from triangles, and from parry's polyhedra.
 
 mod clusters;
+mod face_plane;
 mod faces;
+mod flat_edges;
 mod flat_sides;
 mod graph;
 pub(super) mod half_edge;

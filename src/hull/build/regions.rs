@@ -4,19 +4,9 @@ use std::cmp::Reverse;
 
 use glam::DVec3;
 
+use super::flat_edges::{AreaVectors, NearlyFlatEdges};
 use super::half_edge::{HalfEdge, HalfEdgeMesh, next, triangle};
-use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS, MIN_TRIANGLE_HEIGHT};
-
-/// Twice the area vector of a triangle.
-pub(super) fn area_vector(points: &[DVec3], triangle: [u32; 3]) -> DVec3 {
-    let [a, b, c] = triangle.map(|v| points[v as usize]);
-    (b - a).cross(c - a)
-}
-
-pub(super) fn longest_side(points: &[DVec3], triangle: [u32; 3]) -> f64 {
-    let [a, b, c] = triangle.map(|v| points[v as usize]);
-    a.distance(b).max(b.distance(c)).max(c.distance(a))
-}
+use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS};
 
 /// Sets of triangles that lie in one plane each.
 pub(super) struct CoplanarRegions {
@@ -31,51 +21,69 @@ pub(super) struct CoplanarRegions {
 const FREE: u32 = u32::MAX;
 
 impl CoplanarRegions {
-    /// Grows from the largest triangles, whose normals are the most reliable.
-    pub fn grow(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, radius: f64) -> Self {
-        let triangles = mesh.triangles;
-        let vectors: Vec<DVec3> = triangles.iter().map(|&t| area_vector(points, t)).collect();
-        let areas: Vec<f64> = vectors.iter().map(|vector| vector.length()).collect();
+    /// Grows over flat edges from the largest triangles, whose normals are the most reliable.
+    pub fn grow(
+        points: &[DVec3],
+        mesh: &HalfEdgeMesh<'_>,
+        surface: &AreaVectors,
+        flat: &NearlyFlatEdges,
+        radius: f64,
+    ) -> Self {
+        let count = mesh.triangles.len();
+        if flat.is_empty() {
+            return Self::single(count);
+        }
         // The bits of numbers that are not negative are in their order.
         let largest_first = |area: &f64| Reverse(area.to_bits());
-        let mut seeds: Vec<_> = areas.iter().map(largest_first).zip(0..).collect();
+        let mut seeds: Vec<_> = surface.areas.iter().map(largest_first).zip(0..).collect();
         seeds.sort_unstable();
         let mut regions = Self {
-            triangles: Vec::with_capacity(triangles.len()),
+            triangles: Vec::with_capacity(count),
             first: vec![0],
-            of: vec![FREE; triangles.len()],
+            of: vec![FREE; count],
         };
-        let (vectors, areas) = (&vectors, &areas);
         // Whether a triangle lies in the plane of some others.
         let joins = |some: &[u32]| {
-            let (normal, center) = plane(points, triangles, vectors, some);
+            let (normal, center) = plane(points, mesh.triangles, surface, some);
             move |t: usize| {
                 // The direction of a sliver is rounding only; its neighbours decide.
-                let turned = normal.dot(vectors[t]) < FACE_ANGLE_COS * areas[t];
-                let sliver = || {
-                    areas[t] <= MIN_TRIANGLE_HEIGHT * radius * longest_side(points, triangles[t])
-                };
+                let turned = normal.dot(surface.vectors[t]) < FACE_ANGLE_COS * surface.areas[t];
                 let height = |v: u32| normal.dot(points[v as usize] - center);
-                let flat = |&v: &u32| height(v).abs() <= FACE_FLATNESS * radius;
-                (!turned || sliver()) && triangles[t].iter().all(flat)
+                let is_near = |&v: &u32| height(v).abs() <= FACE_FLATNESS * radius;
+                (!turned || surface.is_sliver[t]) && mesh.triangles[t].iter().all(is_near)
             }
         };
         for (_, seed) in seeds {
             if regions.of[seed as usize] != FREE {
                 continue;
             }
-            regions.add(mesh, seed, joins(&[seed]));
+            regions.add(mesh, flat, seed, joins(&[seed]));
             // The corners of a small triangle are rounded, so its plane leaves a large side at the
             // far end. The plane of all triangles that it found there does not.
             if let Some(found) = regions.take_back() {
-                regions.add(mesh, seed, joins(&found));
+                regions.add(mesh, flat, seed, joins(&found));
             }
         }
         regions
     }
 
-    /// A new region: the triangles that hang together with `seed` and join it.
-    fn add(&mut self, mesh: &HalfEdgeMesh<'_>, seed: u32, joins: impl Fn(usize) -> bool) {
+    /// Each triangle is a region.
+    fn single(count: usize) -> Self {
+        Self {
+            triangles: (0..count as u32).collect(),
+            first: (0..=count).collect(),
+            of: (0..count as u32).collect(),
+        }
+    }
+
+    /// A new region: the triangles that hang together with `seed` over flat edges and join it.
+    fn add(
+        &mut self,
+        mesh: &HalfEdgeMesh<'_>,
+        flat: &NearlyFlatEdges,
+        seed: u32,
+        joins: impl Fn(usize) -> bool,
+    ) {
         let region = self.len() as u32;
         let mut at = self.triangles.len();
         self.of[seed as usize] = region;
@@ -83,7 +91,7 @@ impl CoplanarRegions {
         while let Some(&t) = self.triangles.get(at) {
             for side in 3 * t..3 * t + 3 {
                 let other = triangle(mesh.twin(side));
-                if self.of[other] == FREE && joins(other) {
+                if flat.contains(side) && self.of[other] == FREE && joins(other) {
                     self.of[other] = region;
                     self.triangles.push(other as u32);
                 }
@@ -147,18 +155,18 @@ impl CoplanarRegions {
     }
 }
 
-/// The plane of some triangles with these area vectors: its normal, and their centroid.
+/// The plane of some triangles: its normal, and their centroid.
 fn plane(
     points: &[DVec3],
     triangles: &[[u32; 3]],
-    vectors: &[DVec3],
+    surface: &AreaVectors,
     some: &[u32],
 ) -> (DVec3, DVec3) {
     let (mut normal, mut moment, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for &t in some {
         let [a, b, c] = triangles[t as usize].map(|v| points[v as usize]);
-        let weight = vectors[t as usize].length();
-        normal += vectors[t as usize];
+        let weight = surface.areas[t as usize];
+        normal += surface.vectors[t as usize];
         moment += (a + b + c) * (weight / 3.0);
         area += weight;
     }

@@ -83,7 +83,7 @@ impl Hull {
             center,
             radius,
         };
-        validate_no_bowl(climb, &faces)?;
+        validate_no_bowl(climb, &faces, &merged.overtopped)?;
         faces.add_clusters(&exact, &graph, &merged);
         let search = match Scan::new(&points, center, radius) {
             Some(scan) => SupportSearch::Scan(scan),

@@ -2,8 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
+use super::flat_edges::{area_vector, longest_side};
 use super::half_edge::{HalfEdgeMesh, next};
-use super::regions::{area_vector, longest_side};
 use crate::hull::HullError;
 use crate::hull::climb::{self, HillClimb};
 use crate::hull::faces::Faces;
@@ -106,10 +106,14 @@ pub(super) fn validate_convex(
     Ok(at_flat_edge)
 }
 
-/// No face has much of the hull before its plane. Each edge of a bowl is a dent within rounding, but
-/// many of them add up: the way up from the face leads to the rim.
-pub(super) fn validate_no_bowl(climb: HillClimb<'_>, faces: &Faces) -> Result<(), HullError> {
-    for face in 0..faces.len() as FaceId {
+/// None of these faces has much of the hull before its plane. Each edge of a bowl is a dent within
+/// rounding, but many of them add up: the way up from the face leads to the rim.
+pub(super) fn validate_no_bowl(
+    climb: HillClimb<'_>,
+    faces: &Faces,
+    overtopped: &[u16],
+) -> Result<(), HullError> {
+    for face in overtopped.iter().copied().map(FaceId::from) {
         let normal = faces.normal(face);
         let corner = faces.polygon(face)[0].vertex.into();
         let (summit, height) = climb::nearest_summit(climb, normal, corner);

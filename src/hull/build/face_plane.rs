@@ -1,0 +1,77 @@
+//! The supporting plane of a face.
+
+use glam::{DVec3, Vec3};
+
+use super::half_edge::{HalfEdge, HalfEdgeMesh};
+use crate::tolerance::FACE_FLATNESS;
+
+/// A supporting plane.
+pub(super) struct FacePlane {
+    pub normal: Vec3,
+    pub offset: f64,
+    /// Whether a neighbour is higher than a corner.
+    pub is_overtopped: bool,
+}
+
+impl FacePlane {
+    /// That of a sliver whose direction is rounding only: no plane of the hull, and farther out
+    /// than any. Outlines have none either.
+    pub const NONE: Self = Self {
+        normal: Vec3::ZERO,
+        offset: f64::INFINITY,
+        is_overtopped: false,
+    };
+
+    /// Through the outermost of the polygon's corners and their neighbours: on a convex hull no
+    /// vertex is farther out.
+    pub fn new(
+        points: &[DVec3],
+        mesh: &HalfEdgeMesh<'_>,
+        polygon: &[HalfEdge],
+        radius: f64,
+    ) -> Self {
+        let normal = polygon_normal(points, mesh, polygon).as_vec3();
+        let direction = normal.as_dvec3();
+        let height = |v: u32| direction.dot(points[v as usize]);
+        // No value is NaN here, so the NaN check of `f64::max` is not needed.
+        let higher = |a: f64, b: f64| if a > b { a } else { b };
+        let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut around = f64::NEG_INFINITY;
+        let mut before = mesh.start(polygon[polygon.len() - 1]);
+        for &side in polygon {
+            let [corner, after] = [mesh.start(side), mesh.end(side)];
+            let level = height(corner);
+            lowest = -higher(-lowest, -level);
+            highest = higher(highest, level);
+            for to in mesh.outgoing(corner).iter().map(|side| u32::from(side.to)) {
+                if to != before && to != after {
+                    around = higher(around, height(to));
+                }
+            }
+            before = corner;
+        }
+        let offset = higher(highest, around);
+        if offset - lowest > 2.0 * FACE_FLATNESS * radius {
+            return Self::NONE;
+        }
+        Self {
+            normal,
+            offset,
+            is_overtopped: around > lowest,
+        }
+    }
+}
+
+/// The area vector of a polygon, normalised (Newell's method, about its first vertex).
+pub(super) fn polygon_normal(
+    points: &[DVec3],
+    mesh: &HalfEdgeMesh<'_>,
+    polygon: &[HalfEdge],
+) -> DVec3 {
+    let at = |i: usize| points[mesh.start(polygon[i]) as usize];
+    let origin = at(0);
+    let sum: DVec3 = (1..polygon.len() - 1)
+        .map(|i| (at(i) - origin).cross(at(i + 1) - origin))
+        .sum();
+    sum.normalize_or(DVec3::Z)
+}
