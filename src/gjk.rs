@@ -8,6 +8,9 @@
 //! `v` nearest to the origin. A support point `w` in direction `-v` bounds the distance from
 //! below by `v·w / |v|`, `|v|` bounds it from above: every answer carries both bounds.
 
+// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
+// touching/32 and 4 % to resting/16.
+
 mod simplex;
 
 pub use simplex::Simplex;
@@ -178,8 +181,7 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
         if next.face == 0b1111 {
             return Outcome::Overlapping(simplex);
         }
-        // In exact arithmetic the norm decreases strictly; where it does not, rounding has the
-        // last word.
+        // In exact arithmetic the norm decreases strictly.
         if next.point.length_squared() >= norm * norm {
             simplex.keep(before);
             return ended(cso, closest(&simplex, &nearest, lower_bound));

@@ -62,13 +62,9 @@
 //!
 //! let hull = Hull::from_points(&[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z])?;
 //! let pose = RelativePose::new(&Pose::translation(-1.5, 0.0, 0.0)).expect("a finite pose");
-//! let mut query = Query {
-//!     cso: &Cso { shape_1: &hull, shape_2: &hull, pose: &pose },
-//!     max_distance: f64::INFINITY,
-//!     polytope_cache: None,
-//!     scratch: &mut EpaScratch::default(),
-//!     cost: &mut Cost::default(),
-//! };
+//! let cso = Cso { shape_1: &hull, shape_2: &hull, pose: &pose };
+//! let (mut scratch, mut cost) = (EpaScratch::default(), Cost::default());
+//! let mut query = Query::new(&cso, f64::INFINITY, &mut scratch, &mut cost);
 //! let (answer, _stage) = query.run(&PairMemory::None).expect("finite solids");
 //! let Answer::Near(near) = answer else { unreachable!("nothing is beyond infinity") };
 //! assert!((near.signed_distance - 0.5).abs() < 1e-9);

@@ -153,14 +153,8 @@ mod tests {
                 shape_2: &shapes[1],
                 pose: &pose,
             };
-            let answer = Query {
-                cso: &cso,
-                max_distance: 0.1,
-                polytope_cache: None,
-                scratch: &mut EpaScratch::default(),
-                cost: &mut Cost::default(),
-            }
-            .run(&PairMemory::None);
+            let (mut scratch, mut cost) = (EpaScratch::default(), Cost::default());
+            let answer = Query::new(&cso, 0.1, &mut scratch, &mut cost).run(&PairMemory::None);
             let Some((Answer::Near(near), _)) = answer else {
                 panic!("no contact: {answer:?}");
             };

@@ -120,15 +120,10 @@ fn ask<'a>(
         pose: &pose,
     };
     let mut cost = Cost::default();
-    let (answer, stage) = Query {
-        cso: &cso,
-        max_distance: options.prediction,
-        polytope_cache: None,
-        scratch: &mut EpaScratch::default(),
-        cost: &mut cost,
-    }
-    .run(&memory)
-    .ok_or("the shapes are no solids")?;
+    let mut scratch = EpaScratch::default();
+    let (answer, stage) = Query::new(&cso, options.prediction, &mut scratch, &mut cost)
+        .run(&memory)
+        .ok_or("the shapes are no solids")?;
     let contacts = match &answer {
         Answer::Separated(_) => Vec::new(),
         Answer::Near(near) => {
