@@ -241,3 +241,10 @@ const _: () = assert!(
 /// No pair is scaled up beyond this radius for parry's searches: the squares of longer coordinates are more
 /// than f32 holds.
 pub const LARGEST_SCALED: f64 = 1e15;
+
+/// Cores of capsules nearer than this share of the pair's size meet: the direction between their nearest
+/// points is rounding only.
+pub const CAPSULE_TOUCH: f64 = 1e-12;
+
+/// Gaps that differ by less than this share of the radii are the same: the promised accuracy of a contact.
+pub const SAME_GAP: f64 = 1e-5;

@@ -54,3 +54,10 @@ pub(crate) const PRESSED: f64 = 0.03;
 /// A face beside the one in contact belongs to it up to this slope over the contact plane, that of 30
 /// degrees. Steeper ones look aside.
 pub(crate) const STEEPEST_BESIDE: f32 = 0.577;
+
+/// Capsules lie side by side if the angle between their axes, seen along the normal, has at most this sine
+/// (ten degrees). Those that cross at a wider one touch at one place.
+pub(crate) const SIDE_BY_SIDE_SINE: f64 = 0.17;
+
+/// A common part of two capsules shorter than this share of the smaller radius has no two ends.
+pub(crate) const SHORT_LINE: f64 = 0.05;

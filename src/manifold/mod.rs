@@ -9,6 +9,7 @@
 //! the manifold's deepest point is the query's answer.
 
 mod beside;
+pub(crate) mod capsules;
 mod clip;
 mod clip_vertices;
 mod contact_frame;

@@ -1,5 +1,6 @@
 //! The plug into rapier and parry: which shapes are ours, their manifolds, and queries of scenes.
 
+mod capsules;
 mod composite;
 mod constraints;
 mod convert;

@@ -4,6 +4,7 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, Unsupported};
 
 use crate::map_pair::map_pair;
+use crate::parry::capsules::update_capsules;
 use crate::parry::constraints::Constraints;
 use crate::parry::hull_cache::epoch::Epoch;
 use crate::parry::manifold::UpdateManifold;
@@ -58,6 +59,9 @@ impl<F> Updater<'_, F> {
         }
         if has_hull {
             self.stats.record_left(pair::why_left(pos12, [g1, g2]));
+        }
+        if !has_hull && update_capsules(pos12, [g1, g2], prediction, manifold).is_ok() {
+            return Ok(());
         }
         let [c1, c2] = constraints;
         c1.with(|c1| {

@@ -12,6 +12,14 @@
 //! A pair without a previous frame starts with the line of centres as its axis; GJK and EPA count
 //! as cold for it. A stale or wrong memory costs time, never accuracy: nothing is believed that is not
 //! re-evaluated at the present poses.
+//!
+//! [`Stage::BoundingSpheres`]: crate::stats::Stage::BoundingSpheres
+//! [`Stage::Axis`]: crate::stats::Stage::Axis
+//! [`Stage::Feature`]: crate::stats::Stage::Feature
+//! [`Stage::FacetWalk`]: crate::stats::Stage::FacetWalk
+//! [`Stage::CachedPolytope`]: crate::stats::Stage::CachedPolytope
+//! [`Stage::WarmGjk`]: crate::stats::Stage::WarmGjk
+//! [`Stage::WarmEpa`]: crate::stats::Stage::WarmEpa
 
 mod certificate;
 mod facet_walk;

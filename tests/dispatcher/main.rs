@@ -3,6 +3,7 @@
 mod axis_frame;
 mod bad_input;
 mod balls;
+mod capsules;
 mod changed_shapes;
 mod coherence;
 mod contacts;
