@@ -26,6 +26,15 @@ pub trait Support {
     /// May panic if the shape has no vertex `start`: see [`clamp_vertex`](Self::clamp_vertex).
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId);
 
+    /// The greatest `dir · p` over the shape, whatever is wrong with it: of a surface that rounding has dented
+    /// [`support`](Self::support) may find a vertex that is only nearly extreme.
+    #[inline]
+    fn extent(&self, dir: DVec3) -> f64 {
+        let start = self.start_vertex(dir);
+        let (extreme, _) = self.support(dir, start, &mut Cost::default());
+        dir.dot(extreme)
+    }
+
     /// A start for [`support`](Self::support) when no similar query is known.
     #[inline]
     fn start_vertex(&self, _dir: DVec3) -> VertexId {

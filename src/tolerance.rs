@@ -96,6 +96,10 @@ pub const GJK_CURVED_GAP: f64 = 1e-6;
 /// f64 is far less, and one step of f32 far more.
 pub const MIN_DIRECTED_DISTANCE: f64 = 1e-10;
 
+/// Proved bounds are widened by this share of the pair's size and offset: the rounding of a few f64 sums and
+/// products of coordinates.
+pub const BOUNDS_ROUNDING: f64 = 16.0 * f64::EPSILON;
+
 /// A penetration depth is certified when upper and lower bound differ by less than this share
 /// of the smaller shape's radius: a tenth of the promised accuracy.
 pub const DEPTH_GAP: f64 = 1e-6;

@@ -163,7 +163,7 @@ impl ExpandingPolytope {
     }
 
     /// The corners of all faces.
-    pub fn surface(&self) -> impl Iterator<Item = &[u32; 3]> {
+    pub fn surface(&self) -> impl Iterator<Item = &[u32; 3]> + Clone {
         self.faces
             .iter()
             .filter(|face| face.alive)
@@ -320,6 +320,16 @@ impl ExpandingPolytope {
 #[derive(Clone, Debug, Default)]
 pub struct EpaScratch {
     pub(super) polytope: ExpandingPolytope,
+}
+
+impl EpaScratch {
+    /// The triangles of the last expansion: a closed surface inside of the Minkowski difference,
+    /// counter-clockwise seen from outside.
+    pub(crate) fn surface(&self) -> impl Iterator<Item = [CsoVertex; 3]> + Clone {
+        let polytope = &self.polytope;
+        let corners = polytope.surface();
+        corners.map(|corners| corners.map(|vertex| *polytope.vertex(vertex)))
+    }
 }
 
 /// The lesser of two numbers. Neither is NaN, so the check for it in `f64::min` is not needed.

@@ -119,6 +119,11 @@ impl Support for Hull {
         (self.vertex(vertex), vertex)
     }
 
+    fn extent(&self, dir: DVec3) -> f64 {
+        let extents = self.points.iter().map(|point| dir.dot(point.as_dvec3()));
+        extents.fold(f64::NEG_INFINITY, f64::max)
+    }
+
     #[inline]
     fn start_vertex(&self, dir: DVec3) -> VertexId {
         match &self.search {

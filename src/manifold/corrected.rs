@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::contacts::Contacts;
-use super::patch::ContactPatch;
+use super::patch::SurfacePair;
 use super::reduce::Selection;
 use super::scratch::ClipScratch;
 use crate::query::{self, Feature, Proximity};
@@ -36,7 +36,7 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
         features,
         ..*proximity
     };
-    let patch = ContactPatch::new(cso, &proximity, normal, planes)?;
+    let patch = SurfacePair::new(cso, &proximity, normal, planes)?;
     patch.clip(cso, clipper);
     let corners = &clipper.corners;
     let scale = cso.min_radius();

@@ -16,6 +16,7 @@ mod contact_frame;
 mod contacts;
 mod corrected;
 mod half_space;
+mod outline;
 mod patch;
 mod polygon;
 mod reduce;
@@ -29,12 +30,13 @@ use crate::support::{Cso, Polytope};
 use crate::tolerance::SAME_DEPTH;
 use crate::tuning::{PRESSED, SAME_POINT};
 use clip::Clipper;
-use patch::ContactPatch;
+use patch::SurfacePair;
 use reduce::{Candidates, Selection};
 
 pub use contacts::{ContactPoint, Contacts, MAX_POINTS};
 pub use corrected::contacts_along;
 pub use half_space::half_space_contacts;
+pub use outline::{PatchCorner, contact_polygon};
 pub use scratch::ClipScratch;
 
 /// The contacts around the witness of a query along its normal: those nearer than `max_distance`
@@ -50,7 +52,7 @@ pub fn contacts<A: Polytope, B: Polytope>(
         clipper,
         candidates,
     } = scratch;
-    let patch = ContactPatch::new(cso, proximity, proximity.normal, planes);
+    let patch = SurfacePair::new(cso, proximity, proximity.normal, planes);
     let Some(mut patch) = patch else {
         return Contacts::witness(proximity, cso.pose);
     };
@@ -72,7 +74,7 @@ pub fn contacts<A: Polytope, B: Polytope>(
 // perf: most pairs need it once, and a call would cost each of them.
 #[inline(always)]
 fn choose(
-    patch: &ContactPatch<'_>,
+    patch: &SurfacePair<'_>,
     clipper: &Clipper,
     candidates: &mut Candidates,
     [least, max_distance]: [f64; 2],

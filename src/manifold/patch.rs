@@ -18,7 +18,7 @@ use crate::tuning::LEVEL_SLOPE;
 
 /// The surface of one shape: the face in contact, or all faces of the cluster that it belongs to, or
 /// those beside it.
-struct ContactSurface<'s> {
+pub(super) struct ContactSurface<'s> {
     /// Of the face or around the cluster.
     polygon: FaceId,
     plane: FaceHeight,
@@ -69,7 +69,7 @@ impl<'s> ContactSurface<'s> {
 
     /// Of planes around a convex shape, the innermost is the surface.
     #[inline(always)]
-    fn heights(&self, x: f32x4, y: f32x4) -> f32x4 {
+    pub fn heights(&self, x: f32x4, y: f32x4) -> f32x4 {
         let mut heights = self.plane.heights(x, y);
         for plane in self.more.iter() {
             let others = plane.heights(x, y) * self.sign;
@@ -80,7 +80,7 @@ impl<'s> ContactSurface<'s> {
 
     /// The face that the surface is in one place.
     #[inline(always)]
-    fn face_at(&self, at: Vec2) -> FaceId {
+    pub fn face_at(&self, at: Vec2) -> FaceId {
         let mut height = self.plane.height(at);
         let mut face = self.plane.face;
         for plane in self.more.iter() {
@@ -94,13 +94,13 @@ impl<'s> ContactSurface<'s> {
 }
 
 /// Both surfaces over the contact plane.
-pub(super) struct ContactPatch<'s> {
+pub(super) struct SurfacePair<'s> {
     /// From the spaces of both shapes.
-    projections: [PlaneProjection; 2],
-    surfaces: [ContactSurface<'s>; 2],
+    pub(super) projections: [PlaneProjection; 2],
+    pub(super) surfaces: [ContactSurface<'s>; 2],
 }
 
-impl<'s> ContactPatch<'s> {
+impl<'s> SurfacePair<'s> {
     pub fn new<A: Polytope, B: Polytope>(
         cso: &Cso<'_, A, B>,
         proximity: &Proximity,
@@ -228,7 +228,7 @@ impl<'s> ContactPatch<'s> {
 
     /// What meets at a corner of the intersection.
     #[inline(always)]
-    fn features<A: Polytope, B: Polytope>(
+    pub fn features<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
         clipper: &Clipper,
@@ -258,7 +258,7 @@ impl<'s> ContactPatch<'s> {
     }
 
     #[inline]
-    fn polygons(&self) -> [FaceId; 2] {
+    pub fn polygons(&self) -> [FaceId; 2] {
         [self.surfaces[0].polygon, self.surfaces[1].polygon]
     }
 }
@@ -276,7 +276,7 @@ fn contact_face(shape: &impl Polytope, feature: Feature, outward: DVec3) -> Face
 
 /// The `i`-th side of a polygon: an edge, or its first corner where it cuts across faces.
 #[inline]
-fn outline_edge(shape: &impl Polytope, polygon: FaceId, i: usize) -> Feature {
+pub(super) fn outline_edge(shape: &impl Polytope, polygon: FaceId, i: usize) -> Feature {
     match shape.face_edge(polygon, i) {
         Some(edge) => Feature::Edge(edge),
         None => Feature::Vertex(shape.face_vertex(polygon, i)),

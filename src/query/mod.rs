@@ -21,16 +21,24 @@
 //! [`Stage::WarmGjk`]: crate::stats::Stage::WarmGjk
 //! [`Stage::WarmEpa`]: crate::stats::Stage::WarmEpa
 
+mod bounds;
 mod certificate;
+mod contact_id;
+mod error;
 mod facet_walk;
 mod gauss_map;
+mod patch;
 mod pipeline;
 mod search;
 mod seeds;
 mod types;
 mod witness;
 
+pub use bounds::{Certificate, SeparationBounds};
 pub(crate) use certificate::facet::{vertex_of, vertices};
+pub use contact_id::ContactId;
+pub use error::QueryError;
+pub use patch::{ContactPatch, PatchVertex};
 pub(crate) use pipeline::{AxisOnly, Distance, Full, Sink};
 pub use types::{Answer, Feature, PairMemory, Proximity};
 

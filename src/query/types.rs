@@ -6,7 +6,7 @@ use crate::gjk::SeparatingAxis;
 use crate::support::{FaceId, VertexId};
 
 /// A part of a polytope's boundary.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Feature {
     /// A vertex.
     Vertex(VertexId),

@@ -11,6 +11,7 @@ pub mod pair;
 pub mod pose;
 pub mod quality;
 pub mod report;
+pub mod rounded;
 pub mod scanned;
 pub mod scene;
 pub mod scenes;

@@ -84,6 +84,23 @@ impl Solid {
         }
     }
 
+    /// A triangle: two faces, and edges whose normals go from one over the side to the other.
+    pub fn triangle(corners: [DVec3; 3]) -> Self {
+        let mut solid = Self::new(corners.into(), &[[0, 1, 2], [0, 2, 1]]);
+        let normal = solid.planes[0].normal;
+        for [from, to] in [[0, 1], [1, 2], [2, 0]].map(|side| side.map(|i| corners[i])) {
+            let direction = to - from;
+            let across = direction.cross(normal).normalize();
+            let arcs = [[normal, across], [across, -normal]];
+            solid.edges.extend(arcs.map(|normals| Edge {
+                point: from,
+                direction,
+                normals,
+            }));
+        }
+        solid
+    }
+
     /// Its triangles, counter-clockwise from outside.
     pub fn faces(&self) -> &[[u32; 3]] {
         &self.faces

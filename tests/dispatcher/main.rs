@@ -3,6 +3,7 @@
 mod axis_frame;
 mod bad_input;
 mod balls;
+mod bounds;
 mod capsules;
 mod changed_shapes;
 mod coherence;
@@ -20,6 +21,7 @@ mod near_touch;
 mod no_allocations;
 mod no_pair_lost;
 mod parry_regressions;
+mod patches;
 mod round_pairs;
 mod scene_queries;
 mod sizes;

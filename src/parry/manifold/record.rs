@@ -24,7 +24,7 @@ use crate::map_pair::map_pair;
 use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
 use crate::pose::{RelativePose, is_unit};
-use crate::query::{Feature, PairMemory};
+use crate::query::{ContactId, Feature, PairMemory};
 use crate::simd::u32x4;
 use crate::support::{Cso, Support, VertexId};
 use crate::tolerance::NEARLY_UNIT;
@@ -226,6 +226,16 @@ fn unpack(id: PackedFeatureId) -> Option<Feature> {
     }
 }
 
+impl ContactId {
+    /// That of a contact in a manifold of this crate's, which may be one of rapier's
+    /// (`narrow_phase.contact_pair(a, b)`). `None` if another dispatcher made it, and its features have no
+    /// names.
+    pub fn of<C>(contact: &TrackedContact<C>) -> Option<Self> {
+        let features = [unpack(contact.fid1)?, unpack(contact.fid2)?];
+        Some(Self::new(features))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -239,5 +249,25 @@ mod tests {
             assert_eq!(unpack(pack(feature)), Some(feature));
         }
         assert_eq!(unpack(PackedFeatureId::UNKNOWN), None);
+    }
+    /// Impulses go from one contact to another if these have one id.
+    #[test]
+    fn ids_are_what_impulses_are_matched_by() {
+        let features = [1, 2].map(|i| [Feature::Vertex(i), Feature::Edge(i), Feature::Face(i)]);
+        let features = features.as_flattened();
+        let pairs = features
+            .iter()
+            .flat_map(|a| features.iter().map(|b| [*a, *b]));
+        let pairs: Vec<[Feature; 2]> = pairs.collect();
+        let keys = |pair: &[Feature; 2]| {
+            let packed = map_pair(*pair, |feature| u32x4::splat(pack(feature).0));
+            feature_keys(packed).map(|key| key.to_array()[0])
+        };
+        for a in &pairs {
+            for b in &pairs {
+                let same = ContactId::new(*a) == ContactId::new(*b);
+                assert_eq!(same, keys(a) == keys(b), "{a:?} and {b:?}");
+            }
+        }
     }
 }

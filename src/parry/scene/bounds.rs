@@ -1,0 +1,212 @@
+//! Bounds of a signed distance, and their proofs.
+
+use std::f64::consts::TAU;
+
+use glam::DVec3;
+use parry3d::math::Pose;
+use parry3d::query::Unsupported;
+use parry3d::shape::{PolygonalFeatureMap, Shape};
+
+use super::why::why_not;
+use crate::epa::{self, EpaScratch};
+use crate::gjk::{self, Outcome};
+use crate::hull::Hull;
+use crate::parry::order::PairOrder;
+use crate::parry::pair::{self, Pair, PairVisitor};
+use crate::parry::workspace::Workspace;
+use crate::pose::{RelativePose, ValidPose};
+use crate::query::{Certificate, QueryError, SeparationBounds};
+use crate::simplex::{DistanceSubalgorithm, Preferred};
+use crate::stats::Cost;
+use crate::support::{Cso, CsoVertex, Polytope, Support};
+use crate::tolerance::{BOUNDS_ROUNDING, GJK_CURVED_GAP, GJK_GAP_OF_SIZE};
+
+impl SeparationBounds {
+    /// Of a hull and a hull, cuboid, triangle, ball, capsule, segment, cylinder or cone, rounded or not, in
+    /// either order. `pos12` is the pose of shape 2 in the frame of shape 1.
+    ///
+    /// The bounds differ by at most 2e-6 of the smaller shape's size, or with cylinders and cones 1e-6 of both
+    /// sizes; or by 1e-9 of a large distance. They are about the hull as it was prepared: points of the cloud
+    /// that it was built from may be outside of it by up to 4e-6 of its radius.
+    ///
+    /// # Errors
+    ///
+    /// [`QueryError`] names shapes that are not ours, and poses that are not finite.
+    ///
+    /// ```
+    /// use isa_gjk::query::{Certificate, SeparationBounds};
+    /// use rapier3d::prelude::*;
+    ///
+    /// let corners = [Vector::ZERO, Vector::X, Vector::Y, Vector::Z];
+    /// let tip = SharedShape::convex_hull(&corners).expect("a solid");
+    /// let wall = SharedShape::cuboid(0.5, 5.0, 5.0);
+    ///
+    /// // A planner may move the tip by 0.25 m in any direction.
+    /// let bounds = SeparationBounds::between(&*wall, &*tip, &Pose::translation(0.75, 0.0, 0.0))?;
+    /// assert!(bounds.lower > 0.2499 && bounds.upper < 0.2501);
+    /// assert!(matches!(bounds.certificate, Certificate::Points(_)));
+    ///
+    /// // Here it is 0.1 m inside, and the shortest way out is along x.
+    /// let bounds = SeparationBounds::between(&*wall, &*tip, &Pose::translation(0.4, 0.0, 0.0))?;
+    /// assert!(bounds.lower > -0.1001 && bounds.upper < -0.0999 && bounds.normal.x > 0.9999);
+    /// let out = bounds.normal * -bounds.lower;
+    /// assert!((out.x - 0.1).abs() < 1e-4);
+    /// assert!(matches!(bounds.certificate, Certificate::Surface(_)));
+    /// # Ok::<(), isa_gjk::query::QueryError>(())
+    /// ```
+    pub fn between(
+        shape_1: &dyn Shape,
+        shape_2: &dyn Shape,
+        pos12: &Pose,
+    ) -> Result<Self, QueryError> {
+        let found = pair::visit(shape_1, shape_2, BoundsQuery { pos12 });
+        found.map_err(|_| why_not(pos12, [shape_1, shape_2]))
+    }
+}
+
+struct BoundsQuery<'a> {
+    pos12: &'a Pose,
+}
+
+impl PairVisitor for BoundsQuery<'_> {
+    type Answer = SeparationBounds;
+
+    const CURVED: bool = true;
+
+    fn visit<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        workspace: &mut Workspace,
+    ) -> Result<Self::Answer, Unsupported> {
+        self.bounds(pair, GJK_GAP_OF_SIZE, workspace)
+            .ok_or(Unsupported)
+    }
+
+    fn visit_curved<B: Support>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        _: &dyn PolygonalFeatureMap,
+        workspace: &mut Workspace,
+    ) -> Result<Self::Answer, Unsupported> {
+        self.bounds(pair, GJK_CURVED_GAP, workspace)
+            .ok_or(Unsupported)
+    }
+}
+
+impl BoundsQuery<'_> {
+    fn bounds<B: Support>(
+        &self,
+        pair: &Pair<'_, B>,
+        gap: f64,
+        workspace: &mut Workspace,
+    ) -> Option<SeparationBounds> {
+        let pos12 = ValidPose::new(self.pos12)?;
+        let pose = pair.pose(pos12);
+        let cso = pair.cso(&pose);
+        let (normal, upper, certificate) = search(&cso, gap, &mut workspace.epa)?;
+        let rounding = BOUNDS_ROUNDING * (cso.size() + cso.center().length());
+        let in_2 = pose.direction_to_2(normal);
+        let planes = [
+            pair.hull.extent(normal) + pair.border_radii[0],
+            normal.dot(pose.point_to_1(DVec3::ZERO))
+                - pair.other.extent(-in_2)
+                - pair.border_radii[1],
+        ];
+        let border = pair.border_radii[0] + pair.border_radii[1];
+        let kernel = SeparationBounds {
+            lower: planes[1] - planes[0] - rounding,
+            upper: upper - border + rounding,
+            normal,
+            planes,
+            certificate,
+            border,
+        };
+        let is_finite = kernel.lower.is_finite() && kernel.upper.is_finite();
+        is_finite.then(|| match pair.order {
+            PairOrder::Given => kernel,
+            PairOrder::Reversed => reversed(kernel, &RelativePose::from(pos12)),
+        })
+    }
+}
+
+/// The normal that separates most, and an upper bound of the signed distance with its certificate.
+fn search<B: Support>(
+    cso: &Cso<'_, Hull, B>,
+    gap: f64,
+    scratch: &mut EpaScratch,
+) -> Option<(DVec3, f64, Certificate)> {
+    let cost = &mut Cost::default();
+    let start = cso.vertex_towards_origin(cost);
+    let outcome = gjk::distance_within::<Preferred, _, _>(cso, &[start], f64::INFINITY, gap, cost);
+    let simplex = match outcome {
+        Outcome::Separated(_) => return None,
+        Outcome::Disjoint(closest) => {
+            let points = Certificate::Points([closest.on_1, closest.on_2]);
+            return Some((closest.normal, closest.distance, points));
+        }
+        Outcome::Unsure(closest) => closest.simplex,
+        Outcome::Overlapping(simplex) => simplex,
+    };
+    let seeds: Vec<CsoVertex> = simplex.vertices().copied().collect();
+    let depth = epa::penetration(cso, &seeds, scratch, cost)?;
+    let (upper, certificate) = certify(scratch)?;
+    Some((depth.normal, upper, certificate))
+}
+
+/// What the surface of an expansion proves: the ball within it, or at least that the shapes are no farther
+/// apart than the two points of its triangle that is nearest to the origin.
+fn certify(scratch: &EpaScratch) -> Option<(f64, Certificate)> {
+    let surface = scratch.surface();
+    let distance = |face: &[CsoVertex; 3]| Preferred::nearest(&face.map(|v| v.w)).point.length();
+    let nearest = surface
+        .clone()
+        .min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+    let radius = distance(&nearest);
+    // Of the sphere of all directions: all of it if the origin is inside, else nothing.
+    let seen: f64 = surface
+        .clone()
+        .map(|face| solid_angle(face.map(|v| v.w)))
+        .sum();
+    if seen > TAU {
+        let points = |v: CsoVertex| [v.on_1, v.on_2()];
+        let surface = surface.map(|face| face.map(points)).collect();
+        return Some((-radius, Certificate::Surface(surface)));
+    }
+    let lambda = Preferred::nearest(&nearest.map(|v| v.w)).lambda;
+    let combine = |on: fn(&CsoVertex) -> DVec3| -> DVec3 {
+        let weighted = nearest.iter().zip(lambda);
+        weighted.map(|(vertex, weight)| on(vertex) * weight).sum()
+    };
+    let points = [combine(|v| v.on_1), combine(CsoVertex::on_2)];
+    Some((points[0].distance(points[1]), Certificate::Points(points)))
+}
+
+/// Of a triangle seen from the origin, positive from the side on which it turns clockwise (van Oosterom,
+/// Strackee, *The solid angle of a plane triangle*, IEEE Transactions on Biomedical Engineering 30(2), 1983).
+fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
+    let [la, lb, lc] = [a, b, c].map(DVec3::length);
+    let below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
+    2.0 * a.dot(b.cross(c)).atan2(below)
+}
+
+/// The same with the shapes exchanged. `pose` is that of shape 2, in which the bounds are, in the frame of
+/// shape 1.
+fn reversed(bounds: SeparationBounds, pose: &RelativePose) -> SeparationBounds {
+    let points = |[p, q]: [DVec3; 2]| [q, p].map(|point| pose.point_to_1(point));
+    let normal = -pose.direction_to_1(bounds.normal);
+    let shift = normal.dot(pose.point_to_1(DVec3::ZERO));
+    let [below, above] = bounds.planes;
+    SeparationBounds {
+        normal,
+        planes: [shift - above, shift - below],
+        certificate: match bounds.certificate {
+            Certificate::Points(both) => Certificate::Points(points(both)),
+            // The difference is mirrored, and so are its triangles.
+            Certificate::Surface(faces) => {
+                let mirrored = |[a, b, c]: [[DVec3; 2]; 3]| [a, c, b].map(points);
+                Certificate::Surface(faces.into_iter().map(mirrored).collect())
+            }
+        },
+        ..bounds
+    }
+}

@@ -1,0 +1,144 @@
+//! The whole region of contact.
+
+use glam::DVec3;
+use parry3d::math::{Pose, Real};
+use parry3d::query::Unsupported;
+use parry3d::shape::Shape;
+
+use super::why::why_not;
+use crate::manifold;
+use crate::parry::order::PairOrder;
+use crate::parry::pair::{self, Pair, PairVisitor};
+use crate::parry::workspace::Workspace;
+use crate::pose::{RelativePose, ValidPose};
+use crate::query::{
+    Answer, ContactId, ContactPatch, Feature, PairMemory, PatchVertex, Query, QueryError,
+};
+use crate::stats::Cost;
+use crate::support::Polytope;
+
+impl ContactPatch {
+    /// Where a hull and a hull, cuboid, triangle, ball, capsule or segment, rounded or not, in either order,
+    /// touch, overlap, or are at most `prediction` apart; `None` if they are farther apart. `pos12` is the
+    /// pose of shape 2 in the frame of shape 1.
+    ///
+    /// The deepest point is exact to 1e-5 of the size, and so are the others where faces meet. Where corners or
+    /// edges meet, the polygon is that of the faces next to them that face each other most, as far as these
+    /// are within `prediction`.
+    ///
+    /// # Errors
+    ///
+    /// [`QueryError`] names shapes that are not ours, and poses that are not finite.
+    ///
+    /// ```
+    /// use isa_gjk::query::ContactPatch;
+    /// use rapier3d::prelude::*;
+    ///
+    /// // A prism of eight sides stands on a table, with a part of it beyond the edge.
+    /// let corners: Vec<Vector> = (0..16)
+    ///     .map(|i| {
+    ///         let (sin, cos) = (std::f32::consts::TAU * (i / 2) as f32 / 8.0).sin_cos();
+    ///         Vector::new(cos, if i % 2 == 0 { 0.0 } else { 0.5 }, sin)
+    ///     })
+    ///     .collect();
+    /// let prism = SharedShape::convex_hull(&corners).expect("a solid");
+    /// let table = SharedShape::cuboid(2.0, 0.4, 2.0);
+    ///
+    /// let pose = Pose::translation(2.0, 0.399, 0.0); // of the prism, in the frame of the table
+    /// let patch = ContactPatch::between(&*table, &*prism, &pose, 0.01)?.expect("they overlap");
+    /// assert!((patch.area - 2.0_f64.sqrt()).abs() < 1e-5); // a half of the octagon
+    /// assert!(patch.center.x < 1.6); // the rest is in the air
+    /// assert!(patch.vertices.iter().all(|vertex| (vertex.distance + 1e-3).abs() < 1e-6));
+    /// # Ok::<(), isa_gjk::query::QueryError>(())
+    /// ```
+    pub fn between(
+        shape_1: &dyn Shape,
+        shape_2: &dyn Shape,
+        pos12: &Pose,
+        prediction: Real,
+    ) -> Result<Option<Self>, QueryError> {
+        if prediction.is_nan() {
+            return Err(QueryError::NotFinite);
+        }
+        let found = pair::visit(shape_1, shape_2, PatchQuery { pos12, prediction });
+        found.map_err(|_| why_not(pos12, [shape_1, shape_2]))
+    }
+}
+
+struct PatchQuery<'a> {
+    pos12: &'a Pose,
+    prediction: Real,
+}
+
+impl PairVisitor for PatchQuery<'_> {
+    type Answer = Option<ContactPatch>;
+
+    fn visit<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        workspace: &mut Workspace,
+    ) -> Result<Self::Answer, Unsupported> {
+        let pos12 = ValidPose::new(self.pos12).ok_or(Unsupported)?;
+        let pose = pair.pose(pos12);
+        let cso = pair.cso(&pose);
+        let max_distance = pair.core_distance(self.prediction, cso.size());
+        let cost = &mut Cost::default();
+        let (answer, _) = Query::new(&cso, max_distance, &mut workspace.epa, cost)
+            .run(&PairMemory::None)
+            .ok_or(Unsupported)?;
+        let Answer::Near(near) = answer else {
+            return Ok(None);
+        };
+        let caller = CallerFrame {
+            pose: (pair.order == PairOrder::Reversed).then(|| RelativePose::from(pos12)),
+            normal: near.normal,
+            border_radii: pair.border_radii,
+        };
+        let corners = manifold::contact_polygon(&cso, &near, max_distance, &mut workspace.clip);
+        let corners = corners.into_iter();
+        let mut vertices: Vec<PatchVertex> = corners
+            .map(|corner| caller.vertex(corner.on_1, corner.distance, corner.features))
+            .collect();
+        if pair.order.is_reversed() {
+            vertices.reverse();
+        }
+        let deepest = caller.vertex(near.on_1, near.signed_distance, near.features);
+        Ok(Some(ContactPatch::new(caller.normal(), deepest, vertices)))
+    }
+}
+
+/// From the kernels' frame to that of the caller's shape 1.
+struct CallerFrame {
+    /// Of the caller's shape 2, if the kernels have that first.
+    pose: Option<RelativePose>,
+    /// In the kernels' frame.
+    normal: DVec3,
+    border_radii: [f64; 2],
+}
+
+impl CallerFrame {
+    fn normal(&self) -> DVec3 {
+        match &self.pose {
+            Some(pose) => -pose.direction_to_1(self.normal),
+            None => self.normal,
+        }
+    }
+
+    /// From the place of a contact without borders.
+    fn vertex(&self, on_1: DVec3, distance: f64, features: [Feature; 2]) -> PatchVertex {
+        let [border_1, border_2] = self.border_radii;
+        let (on_1, features) = match &self.pose {
+            Some(pose) => {
+                let on_2 = on_1 + self.normal * (distance - border_2);
+                (pose.point_to_1(on_2), [features[1], features[0]])
+            }
+            None => (on_1 + self.normal * border_1, features),
+        };
+        PatchVertex {
+            on_1,
+            distance: distance - border_1 - border_2,
+            features,
+            id: ContactId::new(features),
+        }
+    }
+}

@@ -1,0 +1,33 @@
+//! Why a query about two shapes has no answer.
+
+use std::error::Error;
+use std::fmt;
+
+/// Why there is no answer about two shapes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum QueryError {
+    /// Neither shape is a hull: a `ConvexPolyhedron`, a `RoundConvexPolyhedron` or a
+    /// [`HullShape`](crate::HullShape). Shapes with parts are to be asked about part by part.
+    NoHull,
+    /// The shape beside the hull is not one that this query knows, or is degenerate.
+    OtherShape,
+    /// A plain hull is flat, not convex, too large or not finite. [`HullShape`](crate::HullShape) names the
+    /// reason.
+    HullNotPrepared,
+    /// The relative pose or the prediction distance is not finite, or too large to compute with.
+    NotFinite,
+}
+
+impl fmt::Display for QueryError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::NoHull => "neither shape is a convex hull",
+            Self::OtherShape => "the query does not know the shape beside the hull",
+            Self::HullNotPrepared => "a hull is flat, not convex, too large or not finite",
+            Self::NotFinite => "the pose or the prediction distance is not finite",
+        })
+    }
+}
+
+impl Error for QueryError {}
