@@ -52,7 +52,7 @@
 //!
 //! # Without a physics engine
 //!
-//! [`query`] works without one (poses and the hull builder are parry's):
+//! [`query`] works without one (poses are parry's):
 //!
 //! ```
 //! use isa_gjk::Hull;

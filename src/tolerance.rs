@@ -61,13 +61,9 @@ pub const MAX_INWARD_HEIGHT: f64 = 6e-7;
 /// A hull whose smallest extent is below this share of its radius has no usable interior.
 pub const MIN_EXTENT: f64 = 1e-6;
 
-/// A hull whose centre is deeper than this share of its radius beneath all faces is thick enough for the
-/// f32 decisions of parry's hull builder: of thousands of clouds down to a seventh of it none lost a corner.
-pub const MIN_TRUSTED_THICKNESS: f64 = 0.05;
-
-/// A point of a cloud may lie outside the hull that was built around it by this share of the radius. Two
-/// such hulls must leave the sum of all errors below the promise: see `WORST_ERROR`.
-pub const MAX_LEFT_OUT: f64 = 4e-6;
+/// The determinant that tells on which side of a plane a point lies is off, in f64, by less than this share
+/// of the sum of its products: nine roundings of at most seven. Nearer to zero, the exact sum decides.
+pub const ORIENTATION_ROUNDING: f64 = 1e-15;
 
 /// Two support values closer than this share of `radius * |direction|` tie for hill climbing:
 /// vertices that are coplanar up to f32 rounding must be seen as one plateau.
@@ -214,8 +210,7 @@ pub(crate) const WORST_ERROR: f64 = POSE_ERROR
     + PROJECTION_ERROR
     + DEPTH_ERROR
     + SAME_DEPTH
-    + OUTPUT_ERROR
-    + CLOUD_ERROR;
+    + OUTPUT_ERROR;
 
 /// A normalised quaternion is off by 3/8 of the excess squared, and a rotation by twice that.
 const POSE_ERROR: f64 = NEARLY_UNIT * NEARLY_UNIT;
@@ -234,8 +229,6 @@ const PROJECTION_ERROR: f64 = DEPTH_GAP;
 const DEPTH_ERROR: f64 = 2.0 * DEPTH_GAP;
 /// Depths, which are at most two radii, are rounded to f32 by half a unit.
 const OUTPUT_ERROR: f64 = f32::EPSILON as f64;
-/// Points of a cloud outside its hull; on each shape.
-const CLOUD_ERROR: f64 = 2.0 * MAX_LEFT_OUT;
 
 const _: () = assert!(
     WORST_ERROR <= PROMISED_ERROR,

@@ -13,7 +13,7 @@ pub enum HullError {
     TooManyPoints,
     /// The point with this index has a NaN or infinite coordinate.
     NotFinite(usize),
-    /// All points lie in a plane, on a line or in one place, up to rounding.
+    /// All points lie in a plane, on a line or in one place, or nearly so.
     Flat,
     /// A triangle refers to a vertex that does not exist, or twice to the same one.
     BadTriangle(usize),
@@ -28,7 +28,7 @@ pub enum HullError {
     /// The surface is not convex: this vertex lies above the plane of a neighbouring triangle, or
     /// is a corner of a triangle that faces inwards or lies over another one.
     NotConvex(usize),
-    /// The hull builder gave up on the points.
+    /// Parry's polyhedron, which rapier saves and draws, could not be made of the surface.
     BuilderFailed,
 }
 
@@ -45,7 +45,7 @@ impl fmt::Display for HullError {
             Self::NotManifold => write!(f, "the triangles do not form one closed surface"),
             Self::InsideOut => write!(f, "the triangles turn clockwise seen from outside"),
             Self::NotConvex(i) => write!(f, "the surface is not convex at vertex {i}"),
-            Self::BuilderFailed => write!(f, "no convex hull of the points could be built"),
+            Self::BuilderFailed => write!(f, "parry makes no polyhedron of the surface"),
         }
     }
 }

@@ -13,7 +13,7 @@ mod graph;
 mod scan;
 mod start_table;
 
-pub(crate) use build::point_cloud::hull_of_points;
+pub(crate) use build::solid::surface_of_points;
 pub use error::HullError;
 
 use glam::{DVec3, Vec3};

@@ -1,8 +1,11 @@
 //! What tests, benches and examples share: exact cases, an oracle in f64, generators of hulls, scenes
 //! of whole worlds, and reports. Not published.
 
+pub mod budget;
 pub mod bytes;
 pub mod cases;
+pub mod divided;
+pub mod families;
 pub mod generate;
 pub mod kinds;
 pub mod memory;

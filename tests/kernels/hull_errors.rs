@@ -1,12 +1,14 @@
 //! What cannot be a hull is refused by name; what is merely extreme in size or shape is built.
 
+use std::collections::HashSet;
 use std::f64::consts::TAU;
-use std::time::Instant;
 
-use glam::{DVec3, Vec3};
+use glam::{DMat3, DQuat, DVec3, Vec3};
 use isa_gjk::internals::stats::Cost;
 use isa_gjk::internals::support::{Polytope, Support};
-use isa_gjk::{Hull, HullError};
+use isa_gjk::{Hull, HullError, HullShape};
+use testkit::divided::divided_block;
+use testkit::families::prism;
 use testkit::generate::Rng;
 
 const TETRAHEDRON: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
@@ -73,21 +75,8 @@ fn points_without_volume_are_refused() {
         .collect();
     for points in [plane, line, slanted, vec![Vec3::ONE; 12]] {
         let error = Hull::from_points(&points).expect_err("no volume");
-        // Parry's builder gives up on some of them; of others it leaves two points, or a thin
-        // surface that rounding turns either way.
-        assert!(
-            matches!(
-                error,
-                HullError::Flat
-                    | HullError::BuilderFailed
-                    | HullError::TooFewPoints
-                    | HullError::InsideOut
-            ),
-            "{error:?} for {points:?}"
-        );
+        assert_eq!(error, HullError::Flat, "{points:?}");
     }
-    let same_point = Hull::from_points(&[Vec3::ONE; 12]).unwrap_err();
-    assert_eq!(same_point, HullError::BuilderFailed);
     let mut flat = corners();
     flat[3] = Vec3::new(0.3, 0.3, 0.0);
     assert_eq!(refusal(flat.clone(), &TETRAHEDRON), HullError::Flat);
@@ -297,9 +286,8 @@ fn build_ellipsoid(count: usize, radii: DVec3, center: DVec3) -> Hull {
             .iter()
             .map(|p| dir.dot(p.as_dvec3()))
             .fold(f64::NEG_INFINITY, f64::max);
-        // Parry may weld points that are near each other.
         let lost = best - height(&hull, dir);
-        assert!(lost <= 1.0e-5 * hull.radius(), "{radii}: lost {lost:e}");
+        assert!(lost <= 1.0e-6 * hull.radius(), "{radii}: lost {lost:e}");
     }
     hull
 }
@@ -319,8 +307,7 @@ fn pebbles_needles_and_cliffs_are_built() {
     }
 }
 
-/// Turned plates and bars, whose corners the builder takes for points of one plane. It used to leave some
-/// out.
+/// Turned plates and bars, whose corners parry's builder takes for points of one plane.
 #[test]
 fn thin_clouds_keep_their_corners() {
     let mut rng = Rng::new(8);
@@ -343,7 +330,7 @@ fn thin_clouds_keep_their_corners() {
                 let height = |p: &Vec3| hull.face_normal(face).dot(p.as_dvec3());
                 let highest = cloud.iter().map(height).fold(f64::MIN, f64::max);
                 let beyond = highest - hull.face_offset(face);
-                assert!(beyond < 1e-5, "{extents:?}: {beyond} outside of {cloud:?}");
+                assert!(beyond < 1e-6, "{extents:?}: {beyond} outside of {cloud:?}");
             }
         }
     }
@@ -393,30 +380,16 @@ fn hulls_far_from_their_origin_are_built() {
 }
 
 #[test]
-fn a_thousand_vertices_are_built_in_no_time() {
+fn all_of_a_thousand_vertices_are_kept() {
     let mut rng = Rng::new(1000);
     let points: Vec<Vec3> = (0..1000).map(|_| rng.direction().as_vec3()).collect();
-    let (vertices, triangles) =
-        parry3d::transformation::try_convex_hull(&points).expect("points on a sphere");
-    let clock = Instant::now();
-    let whole = Hull::from_points(&points).expect("points on a sphere");
-    let from_points = clock.elapsed();
-    let clock = Instant::now();
-    let hull = Hull::from_triangles(vertices, &triangles).expect("a hull");
-    let from_triangles = clock.elapsed();
-    println!(
-        "{} vertices: {from_points:.1?} from points, {from_triangles:.1?} of it from triangles, \
-         {} bytes a vertex",
-        hull.points().len(),
-        hull.heap_bytes() / hull.points().len()
-    );
-    assert_eq!(whole.points().len(), hull.points().len());
-    assert!(from_triangles.as_secs_f64() < 1.0, "{from_triangles:?}");
+    let hull = Hull::from_points(&points).expect("points on a sphere");
+    assert_eq!(hull.points().len(), points.len());
+    assert_eq!(hull.face_count(), 2 * points.len() - 4);
 }
 
-/// All points of a polyhedron are vertices: they are counted before anything is built.
 #[test]
-fn a_polyhedron_of_too_many_points_is_refused_at_once() {
+fn a_polyhedron_of_too_many_points_is_refused() {
     let count = 200;
     let ring = |j: usize| (std::f64::consts::PI * (j as f64 + 0.5) / f64::from(count)).sin_cos();
     let mut points = Vec::new();
@@ -430,11 +403,8 @@ fn a_polyhedron_of_too_many_points_is_refused_at_once() {
     let polyhedron = parry3d::shape::ConvexPolyhedron::from_convex_hull(&points);
     let polyhedron = polyhedron.expect("a sphere");
     assert!(polyhedron.points().len() > 32_768);
-    let start = Instant::now();
     let refused = Hull::try_from(&polyhedron);
     assert_eq!(refused.unwrap_err(), HullError::TooManyPoints);
-    let time = start.elapsed();
-    assert!(time.as_millis() < 50, "{time:?}");
 }
 
 /// Whatever the number of sides, while all of its vertices have names.
@@ -442,46 +412,99 @@ fn a_polyhedron_of_too_many_points_is_refused_at_once() {
 fn triangulated_prisms_of_many_sides_are_prepared() {
     for sides in [1_000, 5_000, 16_384] {
         for half in [0.2, 0.01] {
-            let corner = |i: u32| {
-                let (y, x) = (TAU * f64::from(i) / f64::from(sides)).sin_cos();
-                [-half, half].map(|z| DVec3::new(x, y, z).as_vec3())
-            };
-            let points: Vec<Vec3> = (0..sides).flat_map(corner).collect();
-            let mut triangles = Vec::new();
-            for i in 0..sides {
-                let (a, b) = (2 * i, 2 * ((i + 1) % sides));
-                triangles.extend([[a, b, a + 1], [b, b + 1, a + 1]]);
-                if a > 0 && b > 0 {
-                    triangles.extend([[1, a + 1, b + 1], [0, b, a]]);
-                }
-            }
+            let (points, triangles) = prism(sides, half);
+            let points = points.iter().map(|p| p.as_vec3()).collect();
             let built = Hull::from_triangles(points, &triangles).map(|hull| hull.points().len());
             assert_eq!(built, Ok(2 * sides as usize), "{sides} sides, {half}");
         }
     }
 }
 
-/// Each point of a thin cloud is looked for outside of the hull. Against each face that took 15 times as
-/// long as to build a thick one.
+/// Whatever the number of sides: parry's builder gives up at some 1,000 of them.
 #[test]
-fn thin_clouds_of_many_inner_points_are_built_as_soon_as_thick_ones() {
-    let mut rng = Rng::new(12);
-    let ball: Vec<DVec3> = (0..60_000)
-        .map(|_| rng.direction() * rng.range(0.0, 1.0))
-        .collect();
-    let mut quickest = [f64::INFINITY; 2];
-    for _ in 0..5 {
-        for (thickness, quickest) in [1.0, 0.02].iter().zip(&mut quickest) {
-            let stretch = DVec3::new(1.0, 1.0, *thickness);
-            let points: Vec<Vec3> = ball.iter().map(|p| (*p * stretch).as_vec3()).collect();
-            let start = Instant::now();
-            Hull::from_points(&points).expect("a solid");
-            *quickest = quickest.min(start.elapsed().as_secs_f64());
+fn prisms_and_cones_of_many_sides_are_built_from_points() {
+    for (round, sides) in [1_000_u32, 2_000, 4_000, 16_384].into_iter().enumerate() {
+        let (points, _) = prism(sides, 0.3);
+        let turned = Rng::new(round as u128).rotation();
+        for turn in [DQuat::IDENTITY, turned] {
+            let cone = points.iter().filter(|p| p.z > 0.0).copied();
+            let cone = cone.chain([DVec3::Z]).collect();
+            for cloud in [points.clone(), cone] {
+                let cloud: Vec<Vec3> = cloud.iter().map(|p| (turn * *p).as_vec3()).collect();
+                let shape = HullShape::from_points(&cloud).expect("a solid");
+                check_encloses(shape.hull(), &cloud);
+                let is_exact = turn == DQuat::IDENTITY && sides < 4_000;
+                let corners = shape.hull().points().len();
+                assert!(corners == cloud.len() || !is_exact, "{sides}: {corners}");
+            }
         }
     }
-    let [thick, thin] = quickest;
-    assert!(
-        thin < 8.0 * thick,
-        "{thin} s, and {thick} s for a thick one"
+}
+
+/// No point of a cloud is outside of its hull, and all corners are points of it.
+fn check_encloses(hull: &Hull, cloud: &[Vec3]) {
+    let mut rng = Rng::new(cloud.len() as u128);
+    let faces = (0..hull.face_count() as u32).step_by(1 + hull.face_count() / 50);
+    let normals: Vec<DVec3> = faces.map(|f| hull.face_normal(f)).collect();
+    let dirs = normals.into_iter().chain((0..50).map(|_| rng.direction()));
+    for dir in dirs {
+        let heights = cloud.iter().map(|p| dir.dot(p.as_dvec3()));
+        let best = heights.fold(f64::NEG_INFINITY, f64::max);
+        let lost = best - height(hull, dir);
+        assert!(lost.abs() <= 2.0e-6 * hull.radius(), "{dir}: lost {lost:e}");
+    }
+    let bits = |p: &Vec3| p.to_array().map(f32::to_bits);
+    let cloud: HashSet<_> = cloud.iter().map(bits).collect();
+    assert!(hull.points().iter().all(|p| cloud.contains(&bits(p))));
+}
+
+/// Grids, doubled points, points on edges and in sides, clouds in a line but for a few: only corners stay.
+#[test]
+fn only_corners_of_a_cloud_stay() {
+    let mut rng = Rng::new(21);
+    for round in 0..300 {
+        let cells = rng.count(1, 6) as u32;
+        let half = DVec3::from([(); 3].map(|()| rng.count(1, 64) as f64 / 64.0));
+        // Shears keep coordinates exact and make sides askew.
+        let shear = DMat3::from_cols_array(&[1.0, 0.5, 0.25, 0.75, 1.0, 0.5, 0.0, 0.25, 1.0]);
+        let map = if round % 2 == 0 {
+            DMat3::IDENTITY
+        } else {
+            shear
+        };
+        let mut points: Vec<DVec3> = divided_block(cells, half).0;
+        points.retain(|p| cells.is_power_of_two() || p.abs().cmpeq(half).all());
+        points.extend(points.clone());
+        points.extend((0..20).map(|_| {
+            let places = [(); 3].map(|()| rng.count(0, 8) as f64 / 4.0 - 1.0);
+            half * DVec3::from(places)
+        }));
+        for i in (1..points.len()).rev() {
+            points.swap(i, rng.count(0, i));
+        }
+        let cloud: Vec<Vec3> = points.iter().map(|p| (map * *p).as_vec3()).collect();
+        let hull = Hull::from_points(&cloud).expect("a block");
+        assert_eq!(hull.points().len(), 8, "{round}");
+        assert_eq!(hull.face_count(), 6, "{round}");
+    }
+}
+
+/// As soon as it is known that more of the points are corners than can be named: parry's builder took a
+/// minute for this cloud.
+#[test]
+fn clouds_of_too_many_corners_are_refused() {
+    let mut rng = Rng::new(400);
+    let points: Vec<Vec3> = (0..100_000).map(|_| rng.direction().as_vec3()).collect();
+    assert_eq!(
+        Hull::from_points(&points).unwrap_err(),
+        HullError::TooManyPoints
     );
+    let inner = points.iter().map(|p| *p * 0.9);
+    let few = points[..20_000]
+        .iter()
+        .copied()
+        .chain(inner)
+        .collect::<Vec<_>>();
+    let hull = Hull::from_points(&few).expect("a ball");
+    check_encloses(&hull, &few);
 }

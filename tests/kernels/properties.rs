@@ -6,11 +6,12 @@ use isa_gjk::internals::pose::RelativePose;
 use isa_gjk::internals::stats::Cost;
 use isa_gjk::internals::support::{Cso, Polytope, Support};
 use isa_gjk::query::{Answer, PairMemory, Proximity, Query};
-use isa_gjk::{Hull, IsaGjkDispatcher};
+use isa_gjk::{Hull, HullShape, IsaGjkDispatcher};
 use parry3d::math::Pose;
 use parry3d::query::{Contact, QueryDispatcher};
 use parry3d::shape::SharedShape;
 use proptest::prelude::*;
+use testkit::divided::divided_block;
 use testkit::generate::Rng;
 
 /// Relative to the pair's size: a depth is certified to 1e-6 of the smaller radius, and both
@@ -50,9 +51,28 @@ fn cloud() -> impl Strategy<Value = Vec<Vec3>> {
         prop::collection::vec(point(), 4..40),
         prop::collection::vec(snapped, 8..40),
     ];
-    points.prop_filter("a hull", |points| {
+    let is_thick = |points: &Vec<Vec3>| {
         let built = Hull::from_points(points);
-        built.is_ok_and(|h| thickness(&h) > 0.02) && SharedShape::convex_hull(points).is_some()
+        built.is_ok_and(|h| thickness(&h) > 0.02)
+    };
+    prop_oneof![
+        3 => points.prop_filter("a thick hull", is_thick),
+        1 => thin_or_divided().prop_filter("a hull", |points| Hull::from_points(points).is_ok()),
+    ]
+}
+
+/// Blades, needles and plates, and blocks with inner vertices that were turned before they were rounded.
+fn thin_or_divided() -> impl Strategy<Value = Vec<Vec3>> {
+    any::<u64>().prop_map(|seed| {
+        let mut rng = Rng::new(seed.into());
+        let points = if rng.count(0, 1) == 0 {
+            rng.any_hull(2.0).solid.points
+        } else {
+            let half = DVec3::new(1.0, 0.6, [0.5, 0.1, 0.01][rng.count(0, 2)]);
+            divided_block(rng.count(1, 4) as u32, half).0
+        };
+        let turn = rng.rotation();
+        points.iter().map(|p| (turn * *p).as_vec3()).collect()
     })
 }
 
@@ -75,7 +95,7 @@ fn build(points: &[Vec3]) -> Hull {
 }
 
 fn shape(points: &[Vec3]) -> SharedShape {
-    SharedShape::convex_hull(points).expect("filtered")
+    SharedShape::new(HullShape::from_points(points).expect("filtered"))
 }
 
 fn near(hulls: [&Hull; 2], pose: &Pose, memory: &PairMemory) -> Proximity {
@@ -196,9 +216,8 @@ proptest! {
         let scale = 2.0_f32.powi(exponent);
         let scaled = pair.hulls.each_ref().map(|h| {
             let hull = build(h);
-            let triangles = parry3d::transformation::try_convex_hull(h).expect("filtered").1;
-            let points = hull.points().iter().map(|p| *p * scale).collect();
-            [Hull::from_triangles(points, &triangles).expect("as before"), hull]
+            let points: Vec<Vec3> = h.iter().map(|p| *p * scale).collect();
+            [build(&points), hull]
         });
         let [[a, small_a], [b, small_b]] = &scaled;
         let pose = Pose::from_parts(pair.pose.translation * scale, pair.pose.rotation);

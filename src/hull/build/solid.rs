@@ -7,7 +7,7 @@ use super::validate::{
     MAX_VERTICES, center_and_radius, validate_convex, validate_distinct, validate_finite,
     validate_no_bowl, validate_single_layer, validate_triangles,
 };
-use super::{morton, point_cloud};
+use super::{morton, quickhull};
 use crate::hull::climb::{self, HillClimb};
 use crate::hull::faces::Faces;
 use crate::hull::graph::EdgeGraph;
@@ -18,11 +18,20 @@ use crate::stats::Cost;
 use crate::support::{FaceId, Polytope};
 use crate::tolerance::MIN_EXTENT;
 
+/// The vertices and triangles of the hull of a point cloud.
+pub(crate) fn surface_of_points(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
+    if points.len() < 4 {
+        return Err(HullError::TooFewPoints);
+    }
+    validate_finite(points)?;
+    quickhull::convex_hull(points)
+}
+
 impl Hull {
-    /// The convex hull of a point cloud, by parry's hull builder.
+    /// The convex hull of a point cloud. It is exact: no point is left out.
     ///
     /// Vertex ids are indices into [`points`](Self::points), not into the argument: points inside
-    /// the hull are dropped, equal points are one vertex, and the order is another.
+    /// the hull or of its sides are dropped, equal points are one vertex, and the order is another.
     ///
     /// # Errors
     /// Names what is wrong with the points, see [`HullError`].
@@ -36,7 +45,8 @@ impl Hull {
     /// # Ok::<(), isa_gjk::HullError>(())
     /// ```
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
-        point_cloud::hull_of_points(points, Self::from_reordered_triangles)
+        let (vertices, triangles) = surface_of_points(points)?;
+        Self::from_reordered_triangles(vertices, &triangles)
     }
 
     /// As [`from_triangles`](Self::from_triangles), with the vertices in the order in which they are

@@ -102,13 +102,13 @@ struct Inner {
 }
 
 impl HullShape {
-    /// The convex hull of a point cloud, by parry's hull builder, as `SharedShape::convex_hull`
-    /// makes it.
+    /// The convex hull of a point cloud, see [`Hull::from_points`].
     ///
     /// # Errors
     /// Names what is wrong with the points, see [`HullError`].
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
-        hull::hull_of_points(points, Self::from_triangles)
+        let (vertices, triangles) = hull::surface_of_points(points)?;
+        Self::from_triangles(vertices, &triangles)
     }
 
     /// From the triangulated surface of a convex polytope, counter-clockwise from outside.

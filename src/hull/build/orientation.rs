@@ -1,0 +1,137 @@
+//! Exact signs: on which side of a plane a point lies (Shewchuk, *Adaptive precision floating-point
+//! arithmetic and fast robust geometric predicates*, Discrete Comput. Geom. 18, 1997).
+
+use glam::DVec3;
+
+use crate::tolerance::ORIENTATION_ROUNDING;
+
+/// The terms of the determinant: each of its 24 products is the sum of two numbers.
+const TERMS: usize = 48;
+
+/// How far `p` lies above a triangle that turns counter-clockwise seen from above, times twice the area
+/// of that triangle.
+///
+/// All coordinates were f32. Then the sign is exact; the value is good up to rounding.
+pub(super) fn height_over([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
+    let (u, v, w) = (b - a, c - a, p - a);
+    let height = u.cross(v).dot(w);
+    let [u, v, w] = [u, v, w].map(DVec3::abs);
+    let products = DVec3::new(
+        u.y * v.z + u.z * v.y,
+        u.z * v.x + u.x * v.z,
+        u.x * v.y + u.y * v.x,
+    );
+    if height.abs() > ORIENTATION_ROUNDING * products.dot(w) {
+        return height;
+    }
+    exact_height([a, b, c], p)
+}
+
+#[cold]
+fn exact_height([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
+    let mut sum = ExactSum::default();
+    sum.add_determinant(b, c, p);
+    sum.add_determinant(-a, c, p);
+    sum.add_determinant(a, b, p);
+    sum.add_determinant(-a, b, c);
+    sum.largest()
+}
+
+/// A sum as numbers that do not overlap, in the order of their magnitudes.
+struct ExactSum {
+    terms: [f64; TERMS],
+    len: usize,
+}
+
+impl Default for ExactSum {
+    fn default() -> Self {
+        Self {
+            terms: [0.0; TERMS],
+            len: 0,
+        }
+    }
+}
+
+impl ExactSum {
+    fn add_determinant(&mut self, a: DVec3, b: DVec3, c: DVec3) {
+        for (i, j, k) in [(0, 1, 2), (1, 2, 0), (2, 0, 1)] {
+            self.add_product(a[i], b[j], c[k]);
+            self.add_product(-a[i], b[k], c[j]);
+        }
+    }
+
+    /// Of three f32: two of them fit into one f64.
+    fn add_product(&mut self, a: f64, b: f64, c: f64) {
+        let pair = a * b;
+        let product = pair * c;
+        self.add(pair.mul_add(c, -product));
+        self.add(product);
+    }
+
+    fn add(&mut self, mut x: f64) {
+        let mut kept = 0;
+        for i in 0..self.len {
+            let (sum, error) = two_sum(x, self.terms[i]);
+            x = sum;
+            if error != 0.0 {
+                self.terms[kept] = error;
+                kept += 1;
+            }
+        }
+        if x != 0.0 {
+            self.terms[kept] = x;
+            kept += 1;
+        }
+        self.len = kept;
+    }
+
+    /// It has the sign of the sum.
+    fn largest(&self) -> f64 {
+        self.terms[..self.len].last().copied().unwrap_or(0.0)
+    }
+}
+
+/// A sum, and what rounding took from it (Knuth, *The Art of Computer Programming* 2, 4.2.2).
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let of_b = sum - a;
+    (sum, (a - (sum - of_b)) + (b - of_b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_of_the_last_digit_decides() {
+        let place = |x: f32, y: f32, z: f32| DVec3::new(x.into(), y.into(), z.into());
+        // In the plane x + y + z = 3 M, where f64 rounds the products.
+        let m = 16_777_215.0_f32;
+        let plane = [
+            place(m, m, m),
+            place(m - 1.0, m, m + 1.0),
+            place(m, m - 1.0, m + 1.0),
+        ];
+        let inside = place(m - 3.0, m + 1.0, m + 1.0).y;
+        assert_eq!(inside, f64::from(m) + 1.0);
+        let sign = |p: DVec3| height_over(plane, p);
+        assert_eq!(sign(place(m - 2.0, m + 1.0, m + 1.0)), 0.0);
+        let tiny = f32::from_bits(1);
+        let above = sign(place(m - 2.0, m + 1.0, m + 1.0) + DVec3::X * f64::from(tiny));
+        assert_eq!(above, 0.0, "f64 does not hold that point");
+        let flat = [
+            place(0.0, 0.0, 0.0),
+            place(1.0, 1.0, 3.0),
+            place(1.0, 2.0, 5.0),
+        ];
+        let on = place(m, m, 3.0 * m);
+        let exact = height_over(flat, place(3.0, 4.0, 11.0));
+        assert_eq!(exact, 0.0);
+        assert_eq!(
+            height_over(flat, on).signum(),
+            (f64::from(3.0 * m) - 3.0 * f64::from(m)).signum()
+        );
+        assert!(height_over(flat, place(0.0, 0.0, tiny)) > 0.0);
+        assert!(height_over(flat, place(0.0, 0.0, -tiny)) < 0.0);
+    }
+}

@@ -1,0 +1,238 @@
+//! The convex hull of points (Barber, Dobkin, Huhdanpaa, *The quickhull algorithm for convex hulls*,
+//! ACM Trans. Math. Softw. 22(4), 1996).
+//!
+//! Points are compared with planes by exact signs. So the horizon is always one loop, the surface is
+//! exactly convex, and each point is on or beneath it, whatever is coplanar, thin or in one place.
+
+use glam::{DVec3, Vec3};
+
+use super::orientation::height_over;
+use super::validate::MAX_VERTICES;
+use crate::hull::HullError;
+
+/// The corners of the hull in the order of the points, and triangles counter-clockwise from outside.
+///
+/// # Errors
+/// The points lie in a plane, or more of them are corners than a hull may have.
+pub(super) fn convex_hull(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
+    let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
+    let mut surface = Surface::tetrahedron(&exact)?;
+    surface.grow()?;
+    let bends = surface.bends();
+    // Fewer than three edges bend at what lies in a flat side or on a straight edge.
+    let corners: Vec<usize> = (0..points.len()).filter(|&v| bends[v] > 2).collect();
+    let vertices: Vec<Vec3> = corners.iter().map(|&v| points[v]).collect();
+    if surface.vertex_count > corners.len() {
+        return convex_hull(&vertices);
+    }
+    let mut names = vec![0; points.len()];
+    for (name, &corner) in corners.iter().enumerate() {
+        names[corner] = name as u32;
+    }
+    let facets = surface.facets.iter().filter(|facet| !facet.is_removed);
+    let named = |facet: &HullFacet| facet.vertices.map(|v| names[v as usize]);
+    Ok((vertices, facets.map(named).collect()))
+}
+
+/// A triangle of the surface.
+struct HullFacet {
+    /// Counter-clockwise from outside.
+    vertices: [u32; 3],
+    /// The facets beyond the sides from each vertex to the next.
+    beyond: [u32; 3],
+    /// Points above it: each is with one of the facets that it is above.
+    above: Vec<u32>,
+    /// The highest of them.
+    peak: (f64, u32),
+    is_removed: bool,
+}
+
+impl HullFacet {
+    fn new(vertices: [u32; 3], beyond: [u32; 3]) -> Self {
+        Self {
+            vertices,
+            beyond,
+            above: Vec::new(),
+            peak: (0.0, 0),
+            is_removed: false,
+        }
+    }
+}
+
+/// A side of a facet that a new vertex sees from inside, with the facet beyond, which it does not see.
+struct HorizonEdge {
+    from: u32,
+    to: u32,
+    beyond: u32,
+}
+
+struct Surface<'a> {
+    points: &'a [DVec3],
+    facets: Vec<HullFacet>,
+    vertex_count: usize,
+    /// The new facet whose side on the horizon starts at a vertex.
+    starting_at: Vec<u32>,
+}
+
+impl<'a> Surface<'a> {
+    fn tetrahedron(points: &'a [DVec3]) -> Result<Self, HullError> {
+        let farthest = |measure: &dyn Fn(DVec3) -> f64| {
+            let measured = (0..points.len()).map(|i| (measure(points[i]), i));
+            measured.fold((f64::NEG_INFINITY, 0), |best, next| {
+                if next.0 > best.0 { next } else { best }
+            })
+        };
+        let a = farthest(&|p| -p.x).1;
+        let b = farthest(&|p| p.distance_squared(points[a])).1;
+        let along = points[b] - points[a];
+        let c = farthest(&|p| along.cross(p - points[a]).length_squared()).1;
+        let base = [a, b, c].map(|v| points[v]);
+        let (height, d) = farthest(&|p| height_over(base, p).abs());
+        if height == 0.0 {
+            return Err(HullError::Flat);
+        }
+        let is_beneath = height_over(base, points[d]) < 0.0;
+        let [b, c] = if is_beneath { [b, c] } else { [c, b] };
+        let [a, b, c, d] = [a, b, c, d].map(|v| v as u32);
+        let mut surface = Self {
+            points,
+            facets: vec![
+                HullFacet::new([a, b, c], [1, 2, 3]),
+                HullFacet::new([a, d, b], [3, 2, 0]),
+                HullFacet::new([b, d, c], [1, 3, 0]),
+                HullFacet::new([c, d, a], [2, 1, 0]),
+            ],
+            vertex_count: 4,
+            starting_at: vec![0; points.len()],
+        };
+        for point in 0..points.len() as u32 {
+            surface.hand_over(point, 0);
+        }
+        Ok(surface)
+    }
+
+    fn height(&self, facet: u32, point: u32) -> f64 {
+        let vertices = self.facets[facet as usize].vertices;
+        height_over(
+            vertices.map(|v| self.points[v as usize]),
+            self.points[point as usize],
+        )
+    }
+
+    /// Gives a point to the first facet from `first` on that it is above, if there is one.
+    fn hand_over(&mut self, point: u32, first: u32) {
+        for facet in first..self.facets.len() as u32 {
+            let height = self.height(facet, point);
+            if height > 0.0 {
+                let facet = &mut self.facets[facet as usize];
+                facet.above.push(point);
+                // Of points in a plane, the first or last in the order of coordinates is a corner.
+                let place = |v: u32| self.points[v as usize].to_array();
+                let is_as_high = height == facet.peak.0 && place(point) > place(facet.peak.1);
+                if height > facet.peak.0 || is_as_high {
+                    facet.peak = (height, point);
+                }
+                return;
+            }
+        }
+    }
+
+    /// Takes in all points that are above a facet.
+    fn grow(&mut self) -> Result<(), HullError> {
+        let (mut horizon, mut seen, mut unassigned) = (Vec::new(), Vec::new(), Vec::new());
+        let mut facet = 0;
+        while facet < self.facets.len() {
+            if !self.facets[facet].above.is_empty() {
+                self.vertex_count += 1;
+                if self.vertex_count > MAX_VERTICES {
+                    return Err(HullError::TooManyPoints);
+                }
+                let eye = self.facets[facet].peak.1;
+                self.remove_seen(eye, facet as u32, &mut horizon, &mut seen);
+                let first = self.close(eye, &horizon);
+                for &facet in &seen {
+                    unassigned.append(&mut self.facets[facet as usize].above);
+                }
+                for point in unassigned.drain(..) {
+                    self.hand_over(point, first);
+                }
+            }
+            facet += 1;
+        }
+        Ok(())
+    }
+
+    /// Removes what a point sees, from one such facet on, and leaves the edges around it in `horizon`.
+    fn remove_seen(
+        &mut self,
+        eye: u32,
+        facet: u32,
+        horizon: &mut Vec<HorizonEdge>,
+        seen: &mut Vec<u32>,
+    ) {
+        horizon.clear();
+        seen.clear();
+        seen.push(facet);
+        self.facets[facet as usize].is_removed = true;
+        let mut next = 0;
+        while let Some(&facet) = seen.get(next) {
+            let HullFacet {
+                vertices, beyond, ..
+            } = self.facets[facet as usize];
+            for side in 0..3 {
+                let other = beyond[side];
+                if self.facets[other as usize].is_removed {
+                    continue;
+                }
+                if self.height(other, eye) > 0.0 {
+                    self.facets[other as usize].is_removed = true;
+                    seen.push(other);
+                } else {
+                    horizon.push(HorizonEdge {
+                        from: vertices[side],
+                        to: vertices[(side + 1) % 3],
+                        beyond: other,
+                    });
+                }
+            }
+            next += 1;
+        }
+    }
+
+    /// Spans facets between a point and the horizon. The first of them.
+    fn close(&mut self, eye: u32, horizon: &[HorizonEdge]) -> u32 {
+        let first = self.facets.len() as u32;
+        for (id, edge) in (first..).zip(horizon) {
+            let facet = HullFacet::new([edge.from, edge.to, eye], [edge.beyond, 0, 0]);
+            self.facets.push(facet);
+            self.starting_at[edge.from as usize] = id;
+            let other = &mut self.facets[edge.beyond as usize];
+            let side = other.vertices.iter().position(|&v| v == edge.to);
+            other.beyond[side.expect("it has this edge")] = id;
+        }
+        for (id, edge) in (first..).zip(horizon) {
+            let next = self.starting_at[edge.to as usize];
+            self.facets[id as usize].beyond[1] = next;
+            self.facets[next as usize].beyond[2] = id;
+        }
+        first
+    }
+
+    /// How many of the edges at each vertex bend.
+    fn bends(&self) -> Vec<u32> {
+        let mut bends = vec![0; self.points.len()];
+        for (id, facet) in (0..).zip(&self.facets) {
+            let others = facet.beyond.iter().enumerate();
+            let each_once = |&(_, &other): &(usize, &u32)| !facet.is_removed && id < other;
+            for (side, &other) in others.filter(each_once) {
+                let ends = [facet.vertices[side], facet.vertices[(side + 1) % 3]];
+                let across = self.facets[other as usize].vertices;
+                let third = across.into_iter().find(|v| !ends.contains(v));
+                if self.height(id, third.expect("it shares only two")) < 0.0 {
+                    ends.iter().for_each(|&v| bends[v as usize] += 1);
+                }
+            }
+        }
+        bends
+    }
+}
