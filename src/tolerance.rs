@@ -191,6 +191,10 @@ pub(crate) const SAME_DEPTH: f64 = 2e-6;
 /// So corners that meet up to rounding are never lost.
 pub(crate) const CLIP_SLACK: f32 = 4.0 * f32::EPSILON;
 
+/// A point that is inside or outside of a polygon's side by this many slacks is so for the sides beside it
+/// as well, whichever of them rounding chose.
+pub(crate) const CLEARLY_BESIDE: f32 = 4.0;
+
 /// A box without thickness gets this share of its largest half-extent as one, a hundredth of the promised
 /// accuracy. Its side faces then have normals.
 pub(crate) const MIN_BOX_THICKNESS: f64 = 1e-7;

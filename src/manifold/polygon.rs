@@ -88,6 +88,12 @@ impl PolygonRows {
         self.count.next_multiple_of(LANES)
     }
 
+    #[inline(always)]
+    pub fn corner(&self, corner: usize) -> Vec2 {
+        let (row, lane) = (&self.rows[corner / LANES], corner % LANES);
+        Vec2::new(row.x.as_array()[lane], row.y.as_array()[lane])
+    }
+
     /// The side that starts at a corner.
     #[inline(always)]
     pub fn side(&self, corner: usize) -> Line {

@@ -9,6 +9,7 @@ use glam::Vec2;
 
 use super::clip_vertices::ClipVertices;
 use super::polygon::{Line, PolygonRows};
+use crate::tolerance::CLEARLY_BESIDE;
 
 /// The sectors of a polygon, and the one that was entered last.
 struct Sectors<'p> {
@@ -17,21 +18,33 @@ struct Sectors<'p> {
     /// 1 if it is counter-clockwise, -1 if it is clockwise.
     turn: f32,
     at: usize,
+    /// From the centre to both ends of the present sector's side.
+    ends: [Vec2; 2],
+}
+
+/// Where a point lies as to a polygon.
+#[derive(Clone, Copy, PartialEq)]
+enum Inclusion {
+    Inside,
+    /// Beyond the side of its sector.
+    Outside,
+    /// By less than rounding may be.
+    OnBorder,
 }
 
 impl<'p> Sectors<'p> {
     /// `None` for a polygon that is too thin.
     fn new(polygon: &'p PolygonRows, turn: f32) -> Option<Self> {
         let center = center(polygon)?;
-        let sectors = Self {
+        let mut sides = (0..polygon.count).map(|i| polygon.side(i));
+        let is_inside = sides.all(|side| side.height(center) * turn > side.slack);
+        is_inside.then_some(Self {
             polygon,
             center,
             turn,
             at: 0,
-        };
-        let mut sides = (0..polygon.count).map(|i| polygon.side(i));
-        let is_inside = sides.all(|side| side.height(center) * turn > side.slack);
-        is_inside.then_some(sectors)
+            ends: [Vec2::ZERO; 2],
+        })
     }
 
     fn after(&self, sector: usize, steps: usize) -> usize {
@@ -44,19 +57,32 @@ impl<'p> Sectors<'p> {
         }
     }
 
-    fn contains(&self, sector: usize, p: Vec2) -> bool {
+    /// From the centre to a corner.
+    fn spoke(&self, corner: usize) -> Vec2 {
+        self.polygon.corner(corner) - self.center
+    }
+
+    /// Goes to a sector.
+    fn set(&mut self, sector: usize) {
+        self.at = sector;
+        self.ends = [sector, self.after(sector, 1)].map(|corner| self.spoke(corner));
+    }
+
+    /// Whether the present sector has a point.
+    fn contains(&self, p: Vec2) -> bool {
         let dir = p - self.center;
-        let from = self.polygon.side(sector).at - self.center;
-        let to = self.polygon.side(self.after(sector, 1)).at - self.center;
+        let [from, to] = self.ends;
         from.perp_dot(dir) * self.turn >= 0.0 && dir.perp_dot(to) * self.turn > 0.0
     }
 
     /// Goes to the sector of a point. In the centre any is as good.
     fn enter(&mut self, p: Vec2) {
-        let mut sectors = 0..self.polygon.count;
-        self.at = sectors
-            .find(|&sector| self.contains(sector, p))
-            .unwrap_or(0);
+        for sector in (0..self.polygon.count).rev() {
+            self.set(sector);
+            if self.contains(p) {
+                return;
+            }
+        }
     }
 
     /// Goes on to the sector of `q` as one goes straight from `p`, the point of the present one. The
@@ -65,23 +91,46 @@ impl<'p> Sectors<'p> {
         let count = self.polygon.count;
         let start = self.at;
         let forth = (p - self.center).perp_dot(q - self.center) * self.turn >= 0.0;
-        let step = if forth { 1 } else { count - 1 };
         let mut steps = 0;
-        while steps < count && !self.contains(self.at, q) {
-            self.at = self.after(self.at, step);
+        while steps < count && !self.contains(q) {
+            let [from, to] = self.ends;
+            if forth {
+                self.at = self.after(self.at, 1);
+                self.ends = [to, self.spoke(self.after(self.at, 1))];
+            } else {
+                self.at = self.after(self.at, count - 1);
+                self.ends = [self.spoke(self.at), from];
+            }
             steps += 1;
         }
         let first = if forth { start } else { self.at };
         (self.after(first, count - 1), (steps + 3).min(count))
     }
 
-    /// Whether a point of the present sector is inside of the polygon.
-    fn is_inside(&self, p: Vec2) -> bool {
+    /// Where a point of the present sector lies.
+    fn place(&self, p: Vec2) -> Inclusion {
+        let side = self.polygon.side(self.at);
+        let height = side.height(p) * self.turn;
+        if height > CLEARLY_BESIDE * side.slack {
+            Inclusion::Inside
+        } else if height < -CLEARLY_BESIDE * side.slack {
+            Inclusion::Outside
+        } else {
+            Inclusion::OnBorder
+        }
+    }
+
+    /// Whether a point of the present sector, which is in some place, counts as inside.
+    fn is_inside(&self, p: Vec2, place: Inclusion) -> bool {
         let beside = [self.polygon.count - 1, 0, 1];
-        beside.into_iter().all(|steps| {
-            let side = self.polygon.side(self.after(self.at, steps));
-            side.height(p) * self.turn >= -side.slack
-        })
+        let mut sides = beside
+            .into_iter()
+            .map(|steps| self.polygon.side(self.after(self.at, steps)));
+        match place {
+            Inclusion::Inside => true,
+            Inclusion::Outside => false,
+            Inclusion::OnBorder => sides.all(|side| side.height(p) * self.turn >= -side.slack),
+        }
     }
 }
 
@@ -100,12 +149,24 @@ pub(super) fn intersect(
     let subject_source = window.width() * width;
     let window_source = subject_source + width;
     of_window.enter(subject.side(0).at);
+    let mut place = of_window.place(subject.side(0).at);
     for j in 0..subject.count {
         let side = subject.side(j);
-        if of_window.is_inside(side.at) {
+        if of_window.is_inside(side.at, place) {
             corners.push(side.at, subject_source + j);
         }
-        let (first, count) = of_window.follow(side.at, side.at + side.along);
+        let end = side.at + side.along;
+        let beyond = window.side(of_window.at);
+        let start = place;
+        let (first, count) = of_window.follow(side.at, end);
+        place = of_window.place(end);
+        // What begins and ends inside stays inside, and what stays beyond one side is outside.
+        let is_inside = start == Inclusion::Inside && place == Inclusion::Inside;
+        let is_outside =
+            start == Inclusion::Outside && beyond.height(end) < -CLEARLY_BESIDE * beyond.slack;
+        if is_inside || is_outside {
+            continue;
+        }
         for steps in 0..count {
             let i = of_window.after(first, steps);
             if let Some(at) = window.side(i).crossing(&side) {
@@ -116,7 +177,8 @@ pub(super) fn intersect(
     of_subject.enter(window.side(0).at);
     for i in 0..window.count {
         let side = window.side(i);
-        if of_subject.is_inside(side.at) {
+        let place = of_subject.place(side.at);
+        if of_subject.is_inside(side.at, place) {
             corners.push(side.at, window_source + i);
         }
         of_subject.follow(side.at, side.at + side.along);
