@@ -207,3 +207,43 @@ where
 pub(crate) fn empty_workspace() -> ContactManifoldsWorkspace {
     VoxelsShapeContactManifoldsWorkspace::<2>::new().into()
 }
+
+#[cfg(test)]
+mod tests {
+    use parry3d::query::DefaultQueryDispatcher;
+    use parry3d::shape::Ball;
+
+    use super::*;
+    use crate::parry::hull_cache::epoch::Epoch;
+    use crate::stats::SharedStats;
+
+    /// Parts that meet for the first time are looked for among all that met before, in vain.
+    #[test]
+    fn searching_is_linear_in_the_parts() {
+        let (stats, ball) = (SharedStats::default(), Ball::new(0.5));
+        for count in [10, 100, 1000] {
+            let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+            let mut workspace = None;
+            for first in [0, count, 2 * count] {
+                let updater = Updater {
+                    fallback: &DefaultQueryDispatcher,
+                    stats: &stats,
+                    epoch: Epoch::of_pair(),
+                };
+                let mut pairs = SubManifolds::new(updater, 0.0, &mut manifolds, &mut workspace);
+                let whole = SubShape::whole(&ball);
+                for id in (first..first + count).rev() {
+                    let part = SubShape {
+                        id,
+                        ..SubShape::whole(&ball)
+                    };
+                    pairs.manifold(&part, &whole);
+                }
+                let most = (SEARCHES + 1) * 2 * count as usize;
+                assert!(pairs.searched <= most, "{} of {most}", pairs.searched);
+                pairs.finish();
+                assert_eq!(manifolds.len(), count as usize);
+            }
+        }
+    }
+}
