@@ -5,7 +5,7 @@
 //! oracle: it is finite, the same from both sides, the same warm and cold, and no direction
 //! separates the shapes by more than the distance, the normal by no less.
 //!
-//! `FUZZ_RUNS=1000000 FUZZ_SEED=7 cargo test --release --test dispatcher fuzz` runs longer;
+//! `FUZZ_SECONDS=600 FUZZ_SEED=7 cargo test --release --test dispatcher fuzz` runs longer;
 //! `FUZZ_KEEP=1` with it adds inputs to the corpus.
 
 use std::collections::BTreeSet;
@@ -16,6 +16,7 @@ use isa_gjk::{HullShape, IsaGjkDispatcher, Stats};
 use parry3d::math::{Pose, Real};
 use parry3d::query::{QueryDispatcher, ShapeCastOptions};
 use parry3d::shape::{Shape, SharedShape};
+use testkit::budget;
 use testkit::bytes::Bytes;
 use testkit::memory::{Manifold, Memory, cold_manifold};
 
@@ -285,19 +286,15 @@ fn the_corpus_holds() {
     assert!(count >= 20, "only {count} inputs");
 }
 
-fn number(name: &str, default: u64) -> u64 {
-    let value = std::env::var(name).ok();
-    value.map_or(default, |text| text.parse().expect("a number"))
-}
-
 #[test]
 fn random_inputs_hold() {
-    let runs = number("FUZZ_RUNS", 20_000);
-    let seed = number("FUZZ_SEED", 1);
+    let seed = budget::seed();
     let keep = std::env::var_os("FUZZ_KEEP").is_some();
     let mut rng = oorandom::Rand64::new(seed.into());
-    let (mut pairs, mut seen, mut findings) = (0, BTreeSet::new(), Vec::new());
-    for turn in 0..runs {
+    let (mut runs, mut pairs) = (0, 0);
+    let (mut seen, mut findings) = (BTreeSet::new(), Vec::new());
+    for turn in budget::turns(20_000) {
+        runs += 1;
         let length = rng.rand_range(40..400) as usize;
         let input: Vec<u8> = (0..length).map(|_| rng.rand_u64() as u8).collect();
         let done = std::panic::catch_unwind(|| run(&input, false));

@@ -11,6 +11,7 @@ mod contacts;
 mod curved;
 mod exact_cases;
 mod fallback;
+mod families;
 mod fuzz;
 mod hull_shape;
 mod hull_shape_solid;
