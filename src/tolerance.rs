@@ -42,6 +42,11 @@ pub const MAX_DENT: f64 = 1e-6;
 /// make a bowl. The noise of scanned plates stays below it.
 pub const BOWL: f64 = 5e-5;
 
+/// What a climb may lose (relative to the radius) on a surface with such a bowl. Along a direction tilted
+/// by twice the slope of its sides, which is twice its depth over half its width, the rim opposite the top
+/// is just a summit, lower by that tilt over the whole width.
+pub const BOWL_LOSS: f64 = 8.0 * BOWL;
+
 /// Where a surface bends at an edge by less than this share of the radius, its two triangles may as well
 /// have the other diagonal: twice what a dent may be deep.
 pub const FLAT_EDGE: f64 = 2e-6;

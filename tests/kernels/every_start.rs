@@ -6,7 +6,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use glam::{DQuat, DVec3, EulerRot, Vec3};
 use isa_gjk::internals::stats::Cost;
 use isa_gjk::internals::support::{FaceId, Polytope, Support, VertexId};
-use isa_gjk::internals::tolerance::SUPPORT_TIE;
+use isa_gjk::internals::tolerance::{BOWL_LOSS, SUPPORT_TIE};
 use isa_gjk::{Hull, HullError, HullShape, IsaGjkDispatcher};
 use parry3d::math::Pose;
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
@@ -156,6 +156,38 @@ fn a_bowl_is_not_convex() {
             "{cells}: {hull:?}"
         );
     }
+}
+
+/// Bowls, troughs and funnels so shallow that building takes them: dents that add up. Where the rim is on both
+/// sides, a climb towards a tilted direction may end on the lower one.
+#[test]
+fn climbs_on_shallow_bowls_lose_little() {
+    let mut rng = Rng::new(9);
+    let (mut built, mut most) = (0, 0.0_f64);
+    for cells in [3, 6, 9, 12, 16, 24] {
+        for half in HALVES {
+            for dent in [0.1e-6, 0.3e-6, 0.5e-6, 0.7e-6, 0.9e-6] {
+                let cell = 2.0 / f64::from(cells);
+                let kind = rng.count(0, 2);
+                let turn = [DQuat::IDENTITY, rng.rotation()][rng.count(0, 1)];
+                let bowl = map(&divided_block(cells, half), |p| {
+                    let in_cells = (p / half).truncate() / cell;
+                    let rise = match kind {
+                        0 => in_cells.length_squared(),
+                        1 => in_cells.x * in_cells.x,
+                        _ => in_cells.length(),
+                    };
+                    turn * (p + DVec3::Z * p.z.signum() * dent * rise)
+                });
+                let Ok(hull) = build(&bowl) else { continue };
+                built += 1;
+                most = most.max(worst_climb(&hull, &mut rng) * SUPPORT_TIE);
+            }
+        }
+    }
+    println!("{built} bowls, {most:e} of the radius");
+    assert!(built >= 50, "only {built} built");
+    assert!(most <= BOWL_LOSS, "{most:e} of the radius");
 }
 
 /// The vertex that is remembered lies inside of the side that looks away after the slab turned over.
