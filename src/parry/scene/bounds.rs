@@ -11,10 +11,9 @@ use super::why::why_not;
 use crate::epa::{self, EpaScratch};
 use crate::gjk::{self, Outcome};
 use crate::hull::Hull;
-use crate::parry::order::PairOrder;
-use crate::parry::pair::{self, Pair, PairVisitor};
+use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
 use crate::parry::workspace::Workspace;
-use crate::pose::{RelativePose, ValidPose};
+use crate::pose::RelativePose;
 use crate::query::{Certificate, QueryError, SeparationBounds};
 use crate::simplex::{DistanceSubalgorithm, Preferred};
 use crate::stats::Cost;
@@ -26,8 +25,7 @@ impl SeparationBounds {
     /// either order. `pos12` is the pose of shape 2 in the frame of shape 1.
     ///
     /// The bounds differ by at most 2e-6 of the smaller shape's size, or with cylinders and cones 1e-6 of both
-    /// sizes; or by 1e-9 of a large distance. They are about the hull as it was prepared: points of the cloud
-    /// that it was built from may be outside of it by up to 4e-6 of its radius.
+    /// sizes; or by 1e-9 of a large distance. They are about the hull as it was prepared.
     ///
     /// # Errors
     ///
@@ -79,7 +77,6 @@ impl PairVisitor for BoundsQuery<'_> {
         workspace: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
         self.bounds(pair, GJK_GAP_OF_SIZE, workspace)
-            .ok_or(Unsupported)
     }
 
     fn visit_curved<B: Support>(
@@ -89,7 +86,6 @@ impl PairVisitor for BoundsQuery<'_> {
         workspace: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
         self.bounds(pair, GJK_CURVED_GAP, workspace)
-            .ok_or(Unsupported)
     }
 }
 
@@ -99,11 +95,11 @@ impl BoundsQuery<'_> {
         pair: &Pair<'_, B>,
         gap: f64,
         workspace: &mut Workspace,
-    ) -> Option<SeparationBounds> {
-        let pos12 = ValidPose::new(self.pos12)?;
-        let pose = pair.pose(pos12);
+    ) -> Result<SeparationBounds, Unsupported> {
+        let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
-        let (normal, upper, certificate) = search(&cso, gap, &mut workspace.epa)?;
+        let found = search(&cso, gap, &mut workspace.epa);
+        let (normal, upper, certificate) = found.ok_or(Unsupported)?;
         let rounding = BOUNDS_ROUNDING * (cso.size() + cso.center().length());
         let in_2 = pose.direction_to_2(normal);
         let planes = [
@@ -121,10 +117,13 @@ impl BoundsQuery<'_> {
             certificate,
             border,
         };
-        let is_finite = kernel.lower.is_finite() && kernel.upper.is_finite();
-        is_finite.then(|| match pair.order {
-            PairOrder::Given => kernel,
-            PairOrder::Reversed => reversed(kernel, &RelativePose::from(pos12)),
+        if !kernel.lower.is_finite() || !kernel.upper.is_finite() {
+            return Err(Unsupported);
+        }
+        Ok(if pair.order.is_reversed() {
+            reversed(kernel, &pose)
+        } else {
+            kernel
         })
     }
 }
@@ -189,12 +188,12 @@ fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     2.0 * a.dot(b.cross(c)).atan2(below)
 }
 
-/// The same with the shapes exchanged. `pose` is that of shape 2, in which the bounds are, in the frame of
-/// shape 1.
+/// The same with the shapes exchanged, in the frame of the second one. `pose` is its pose in the frame of the
+/// first.
 fn reversed(bounds: SeparationBounds, pose: &RelativePose) -> SeparationBounds {
-    let points = |[p, q]: [DVec3; 2]| [q, p].map(|point| pose.point_to_1(point));
-    let normal = -pose.direction_to_1(bounds.normal);
-    let shift = normal.dot(pose.point_to_1(DVec3::ZERO));
+    let points = |[p, q]: [DVec3; 2]| [q, p].map(|point| pose.point_to_2(point));
+    let normal = -pose.direction_to_2(bounds.normal);
+    let shift = normal.dot(pose.point_to_2(DVec3::ZERO));
     let [below, above] = bounds.planes;
     SeparationBounds {
         normal,

@@ -7,10 +7,9 @@ use parry3d::shape::Shape;
 
 use super::why::why_not;
 use crate::manifold;
-use crate::parry::order::PairOrder;
-use crate::parry::pair::{self, Pair, PairVisitor};
+use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
+use crate::parry::scene::caller::{CallerProximity, KernelFrame};
 use crate::parry::workspace::Workspace;
-use crate::pose::{RelativePose, ValidPose};
 use crate::query::{
     Answer, ContactId, ContactPatch, Feature, PairMemory, PatchVertex, Query, QueryError,
 };
@@ -44,9 +43,10 @@ impl ContactPatch {
     /// let prism = SharedShape::convex_hull(&corners).expect("a solid");
     /// let table = SharedShape::cuboid(2.0, 0.4, 2.0);
     ///
-    /// let pose = Pose::translation(2.0, 0.399, 0.0); // of the prism, in the frame of the table
+    /// let pose = Pose::translation(1.9, 0.399, 0.0); // of the prism, in the frame of the table
     /// let patch = ContactPatch::between(&*table, &*prism, &pose, 0.01)?.expect("they overlap");
-    /// assert!((patch.area - 2.0_f64.sqrt()).abs() < 1e-5); // a half of the octagon
+    /// assert_eq!(patch.vertices.len(), 7);
+    /// assert!((patch.area - 1.61007).abs() < 1e-5); // the octagon has 2.83
     /// assert!(patch.center.x < 1.6); // the rest is in the air
     /// assert!(patch.vertices.iter().all(|vertex| (vertex.distance + 1e-3).abs() < 1e-6));
     /// # Ok::<(), isa_gjk::query::QueryError>(())
@@ -78,8 +78,7 @@ impl PairVisitor for PatchQuery<'_> {
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
-        let pos12 = ValidPose::new(self.pos12).ok_or(Unsupported)?;
-        let pose = pair.pose(pos12);
+        let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
         let max_distance = pair.core_distance(self.prediction, cso.size());
         let cost = &mut Cost::default();
@@ -89,56 +88,33 @@ impl PairVisitor for PatchQuery<'_> {
         let Answer::Near(near) = answer else {
             return Ok(None);
         };
-        let caller = CallerFrame {
-            pose: (pair.order == PairOrder::Reversed).then(|| RelativePose::from(pos12)),
-            normal: near.normal,
-            border_radii: pair.border_radii,
+        let frame = KernelFrame::new(pair, &pose);
+        let place = |on_1: DVec3, distance: f64| {
+            let on_2 = on_1 + near.normal * distance;
+            frame.near(near.normal, [on_1, on_2], distance)
+        };
+        let vertex = |place: &CallerProximity, features: [Feature; 2]| {
+            let features = pair.order.to_caller(features);
+            PatchVertex {
+                on_1: place.points[0],
+                distance: place.signed_distance,
+                features,
+                id: ContactId::new(features),
+            }
         };
         let corners = manifold::contact_polygon(&cso, &near, max_distance, &mut workspace.clip);
         let corners = corners.into_iter();
         let mut vertices: Vec<PatchVertex> = corners
-            .map(|corner| caller.vertex(corner.on_1, corner.distance, corner.features))
+            .map(|corner| vertex(&place(corner.on_1, corner.distance), corner.features))
             .collect();
         if pair.order.is_reversed() {
             vertices.reverse();
         }
-        let deepest = caller.vertex(near.on_1, near.signed_distance, near.features);
-        Ok(Some(ContactPatch::new(caller.normal(), deepest, vertices)))
-    }
-}
-
-/// From the kernels' frame to that of the caller's shape 1.
-struct CallerFrame {
-    /// Of the caller's shape 2, if the kernels have that first.
-    pose: Option<RelativePose>,
-    /// In the kernels' frame.
-    normal: DVec3,
-    border_radii: [f64; 2],
-}
-
-impl CallerFrame {
-    fn normal(&self) -> DVec3 {
-        match &self.pose {
-            Some(pose) => -pose.direction_to_1(self.normal),
-            None => self.normal,
-        }
-    }
-
-    /// From the place of a contact without borders.
-    fn vertex(&self, on_1: DVec3, distance: f64, features: [Feature; 2]) -> PatchVertex {
-        let [border_1, border_2] = self.border_radii;
-        let (on_1, features) = match &self.pose {
-            Some(pose) => {
-                let on_2 = on_1 + self.normal * (distance - border_2);
-                (pose.point_to_1(on_2), [features[1], features[0]])
-            }
-            None => (on_1 + self.normal * border_1, features),
-        };
-        PatchVertex {
-            on_1,
-            distance: distance - border_1 - border_2,
-            features,
-            id: ContactId::new(features),
-        }
+        let deepest = place(near.on_1, near.signed_distance);
+        Ok(Some(ContactPatch::new(
+            deepest.normals[0],
+            vertex(&deepest, near.features),
+            vertices,
+        )))
     }
 }
