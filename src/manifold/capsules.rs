@@ -33,6 +33,10 @@ pub enum Place {
     SecondEnd,
 }
 
+impl Place {
+    pub const ALL: [Self; 3] = [Self::Deepest, Self::FirstEnd, Self::SecondEnd];
+}
+
 /// The contacts of two capsules in one frame.
 #[derive(Clone, Debug)]
 pub struct CapsuleContacts {

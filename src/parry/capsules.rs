@@ -25,26 +25,48 @@ pub(crate) fn update_capsules<M, C: Default + Copy>(
         b: pose.point_to_1(second.b),
         radius: second.radius,
     };
-    let old = std::mem::take(&mut manifold.points);
-    manifold.clear();
     let Some(contacts) = CapsuleContacts::new([first, second], prediction.into()) else {
+        manifold.clear();
         return Ok(());
     };
+    let data = Place::ALL.map(|place| inherited(&manifold.points, place));
     manifold.local_n1 = contacts.normal.as_vec3();
     manifold.local_n2 = pose.direction_to_2(-contacts.normal).as_vec3();
     let tracked = |contact: &CapsuleContact| {
-        let id = match contact.place {
-            Place::Deepest => PackedFeatureId::edge(0),
-            Place::FirstEnd => PackedFeatureId::vertex(0),
-            Place::SecondEnd => PackedFeatureId::vertex(1),
-        };
+        let id = id_of(contact.place);
         let [p1, p2] = contact.points;
-        let p2 = pose.point_to_2(p2).as_vec3();
-        TrackedContact::new(p1.as_vec3(), p2, id, id, contact.distance as Real)
+        TrackedContact {
+            local_p1: p1.as_vec3(),
+            local_p2: pose.point_to_2(p2).as_vec3(),
+            dist: contact.distance as Real,
+            fid1: id,
+            fid2: id,
+            data: data[contact.place as usize],
+        }
     };
+    // In the memory that they have: a pair at rest allocates nothing.
+    manifold.points.clear();
     manifold.points.extend(contacts.iter().map(tracked));
-    manifold.match_contacts(&old);
     Ok(())
+}
+
+/// What a contact is called on both capsules.
+fn id_of(place: Place) -> PackedFeatureId {
+    match place {
+        Place::Deepest => PackedFeatureId::edge(0),
+        Place::FirstEnd => PackedFeatureId::vertex(0),
+        Place::SecondEnd => PackedFeatureId::vertex(1),
+    }
+}
+
+/// The data of the old contact in this place.
+fn inherited<C: Default + Copy>(contacts: &[TrackedContact<C>], place: Place) -> C {
+    let id = id_of(place);
+    let is_same = |old: &&TrackedContact<C>| old.fid1 == id && old.fid2 == id;
+    contacts
+        .iter()
+        .find(is_same)
+        .map_or_else(C::default, |old| old.data)
 }
 
 /// A capsule that is solid: finite, with a radius. A shape of a user's own may only look like one.

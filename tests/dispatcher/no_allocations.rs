@@ -92,3 +92,15 @@ fn resting_coins_allocate_nothing() {
         }
     }
 }
+
+#[test]
+fn resting_capsules_allocate_nothing() {
+    let log = SharedShape::capsule_y(0.5, 0.1);
+    for spin in [0.0, 1e-3] {
+        let pose = |frame: usize| {
+            let turn = Rotation::from_scaled_axis(Vec3::new(1e-6, spin, 0.0) * frame as f32);
+            Pose::from_parts(Vec3::new(0.199, 0.1, 0.0), turn)
+        };
+        assert_eq!(allocations([&log, &log], pose), 0, "turning by {spin}");
+    }
+}
