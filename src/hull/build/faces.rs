@@ -76,27 +76,26 @@ impl Faces {
             faces_of[r as usize] = first..face_count;
         }
         let faces = faces.finish(face_count.into(), FaceClusters::default());
-        let mut seeds: Vec<u16> = Vec::new();
-        if !flat.is_empty() {
-            let may_grow = faces.with_flat_border(mesh, &flat, &face_of);
-            seeds.extend(faces_of.into_iter().flatten());
-            seeds.retain(|&face| may_grow[usize::from(face)]);
-        }
+        let largest_first = faces_of.into_iter().flatten();
         let merged = MergedFaces {
+            seeds: faces.cluster_seeds(mesh, &flat, &face_of, largest_first),
             face_of,
-            seeds,
             overtopped,
         };
         (faces, merged)
     }
 
-    /// Whether each face has an edge to another one that is nearly flat.
-    fn with_flat_border(
+    /// The faces with an edge to another one that is nearly flat.
+    fn cluster_seeds(
         &self,
         mesh: &HalfEdgeMesh<'_>,
         flat: &NearlyFlatEdges,
         face_of: &[u16],
-    ) -> Vec<bool> {
+        largest_first: impl Iterator<Item = u16>,
+    ) -> Vec<u16> {
+        if flat.is_empty() {
+            return Vec::new();
+        }
         // Without a plane a face may join any cluster.
         let has_planes = (0..self.len() as FaceId).all(|face| self.normal(face) != DVec3::ZERO);
         let mut may_grow = vec![!has_planes; self.len()];
@@ -104,7 +103,9 @@ impl Faces {
             let [here, beyond] = [h, mesh.twin(h)].map(|h| face_of[triangle(h)]);
             may_grow[usize::from(here)] |= here != beyond;
         }
-        may_grow
+        largest_first
+            .filter(|&face| may_grow[usize::from(face)])
+            .collect()
     }
 
     /// Finds the clusters, when the `graph` knows the faces.

@@ -43,6 +43,12 @@ impl AreaVectors {
             areas,
         }
     }
+
+    fn are_nearly_parallel(&self, triangles: [usize; 2]) -> bool {
+        let [a, b] = triangles.map(|t| self.vectors[t]);
+        let [area, other] = triangles.map(|t| self.areas[t]);
+        a.dot(b) >= NEARLY_FLAT_COS * area * other || triangles.iter().any(|&t| self.is_sliver[t])
+    }
 }
 
 /// The edges at which a surface bends by less than four degrees, and those of slivers.
@@ -76,13 +82,5 @@ impl NearlyFlatEdges {
     #[inline]
     pub fn contains(&self, h: HalfEdge) -> bool {
         self.is_flat[h as usize]
-    }
-}
-
-impl AreaVectors {
-    fn are_nearly_parallel(&self, triangles: [usize; 2]) -> bool {
-        let [a, b] = triangles.map(|t| self.vectors[t]);
-        let [area, other] = triangles.map(|t| self.areas[t]);
-        a.dot(b) >= NEARLY_FLAT_COS * area * other || triangles.iter().any(|&t| self.is_sliver[t])
     }
 }

@@ -132,9 +132,3 @@ impl Hull {
         deep_inside.then_some(()).ok_or(HullError::Flat)
     }
 }
-
-impl AsRef<Self> for Hull {
-    fn as_ref(&self) -> &Self {
-        self
-    }
-}

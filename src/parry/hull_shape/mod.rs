@@ -157,12 +157,6 @@ impl HullShape {
     }
 }
 
-impl AsRef<Hull> for HullShape {
-    fn as_ref(&self) -> &Hull {
-        self.hull()
-    }
-}
-
 /// The same hull with all that our queries need: for plain hulls, such as those of a world that
 /// was loaded.
 ///

@@ -250,6 +250,7 @@ mod tests {
         }
         assert_eq!(unpack(PackedFeatureId::UNKNOWN), None);
     }
+
     /// Impulses go from one contact to another if these have one id.
     #[test]
     fn ids_are_what_impulses_are_matched_by() {
