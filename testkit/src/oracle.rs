@@ -158,8 +158,13 @@ impl Solid {
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// How far `point` is from the nearest point of its faces.
+    /// How far `point` is from the nearest point of its faces; of a point or a segment, from that.
     pub fn distance_to_surface(&self, point: DVec3) -> f64 {
+        match self.points[..] {
+            [p] => return p.distance(point),
+            [a, b] => return distance_to_segment(point, [a, b]),
+            _ => {}
+        }
         self.faces
             .iter()
             .map(|face| {
@@ -191,6 +196,13 @@ impl Solid {
             .map(|p| p.distance(centre))
             .fold(0.0, f64::max)
     }
+}
+
+/// How far a point is from a segment, which may be a point itself.
+pub fn distance_to_segment(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
+    let axis = b - a;
+    let share = (p - a).dot(axis) / axis.length_squared().max(f64::MIN_POSITIVE);
+    p.distance(a + axis * share.clamp(0.0, 1.0))
 }
 
 impl Edge {

@@ -7,10 +7,11 @@ use glam::{DQuat, DVec3};
 use isa_gjk::query::{Certificate, QueryError, SeparationBounds};
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::shape::{ConvexPolyhedron, Cuboid, SharedShape};
-use testkit::generate::Rng;
+use testkit::generate::{Rng, prepared};
 use testkit::oracle::{Solid, signed_distance};
 use testkit::pose::ExactPose;
 use testkit::rounded::{self, Rounded};
+use testkit::scenes::hulls;
 
 /// Of the smaller shape's size.
 const MEET: f64 = 2e-6;
@@ -147,15 +148,10 @@ impl Check<'_> {
 
 /// Also where the core is flat, or a line, or a point.
 fn distance_to_core(core: &Solid, p: DVec3) -> f64 {
-    match core.points.len() {
-        1 => core.points[0].distance(p),
-        2 => {
-            let [a, b] = [core.points[0], core.points[1]];
-            let share = (p - a).dot(b - a) / (b - a).length_squared();
-            p.distance(a.lerp(b, share.clamp(0.0, 1.0)))
-        }
-        3 => core.distance_to_surface(p),
-        _ => core.outside(p),
+    if core.points.len() > 3 {
+        core.outside(p)
+    } else {
+        core.distance_to_surface(p)
     }
 }
 
@@ -282,7 +278,7 @@ fn the_normal_leads_out() {
 
 #[test]
 fn cylinders_and_cones_have_bounds() {
-    let hull = SharedShape::new(isa_gjk::HullShape::from_points(&cube(0.5)).expect("a solid"));
+    let hull = prepared(&cube());
     for (shape, apart) in [
         (SharedShape::cylinder(0.5, 0.4), 0.1),
         (SharedShape::cone(0.5, 0.4), 0.1),
@@ -302,17 +298,13 @@ fn cylinders_and_cones_have_bounds() {
     }
 }
 
-fn cube(half: Real) -> Vec<Vector> {
-    let corner = |i: u32| {
-        let side = |bit: u32| if i >> bit & 1 == 1 { half } else { -half };
-        Vector::new(side(0), side(1), side(2))
-    };
-    (0..8).map(corner).collect()
+fn cube() -> SharedShape {
+    hulls::cuboid(Vector::splat(0.5)).expect("a box")
 }
 
 #[test]
 fn what_has_no_bounds_says_why() {
-    let hull = SharedShape::convex_hull(&cube(0.5)).expect("a solid");
+    let hull = cube();
     let ball = SharedShape::ball(0.5);
     let (corners, faces) = Cuboid::new(Vector::new(1.0, 1.0, 1e-7)).to_trimesh();
     let flat = ConvexPolyhedron::from_convex_mesh(corners, &faces).expect("a closed surface");

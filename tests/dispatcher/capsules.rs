@@ -5,6 +5,7 @@ use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Rotation, Vector};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::Capsule;
+use testkit::oracle::distance_to_segment;
 
 type Manifold = ContactManifold<(), u32>;
 
@@ -21,12 +22,6 @@ fn manifold(capsules: [&Capsule; 2], pose: &Pose) -> Manifold {
     manifolds.remove(0)
 }
 
-fn to_segment(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
-    let axis = b - a;
-    let share = (p - a).dot(axis) / axis.length_squared().max(f64::MIN_POSITIVE);
-    p.distance(a + axis * share.clamp(0.0, 1.0))
-}
-
 fn core(capsule: &Capsule, pose: &Pose) -> [DVec3; 2] {
     let q = pose.rotation.as_dquat().normalize();
     [capsule.segment.a, capsule.segment.b].map(|p| q * p.as_dvec3() + pose.translation.as_dvec3())
@@ -34,7 +29,7 @@ fn core(capsule: &Capsule, pose: &Pose) -> [DVec3; 2] {
 
 /// Golden-section search: the distance to a segment is convex along another one.
 fn core_distance(first: [DVec3; 2], second: [DVec3; 2]) -> f64 {
-    let at = |share: f64| to_segment(first[0].lerp(first[1], share), second);
+    let at = |share: f64| distance_to_segment(first[0].lerp(first[1], share), second);
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..200 {
         let (a, b) = (low + 0.382 * (high - low), low + 0.618 * (high - low));
@@ -86,7 +81,10 @@ fn contacts_lie_on_both_surfaces_and_the_deepest_is_the_distance() {
             let p2 = q * point.local_p2.as_dvec3() + pose.translation.as_dvec3();
             let beside = p2 - p1 - normal * f64::from(point.dist);
             assert!(beside.length() < 3.0 * ROUNDING, "{round}: beside {beside}");
-            let heights = [to_segment(p1, cores[0]), to_segment(p2, cores[1])];
+            let heights = [
+                distance_to_segment(p1, cores[0]),
+                distance_to_segment(p2, cores[1]),
+            ];
             for (height, radius) in heights.into_iter().zip([first.radius, second.radius]) {
                 assert!(
                     (height - f64::from(radius)).abs() < 3.0 * ROUNDING,

@@ -12,9 +12,10 @@ use parry3d::shape::SharedShape;
 use rapier3d::prelude::{ColliderBuilder, NarrowPhase, PhysicsWorld, RigidBodyBuilder};
 use testkit::generate::{Rng, hull_of};
 use testkit::memory::Memory;
-use testkit::oracle::{Solid, regret, signed_distance};
+use testkit::oracle::{regret, signed_distance};
 use testkit::pose::ExactPose;
 use testkit::rounded::{self, Rounded};
+use testkit::scenes::hulls;
 
 /// Of both sizes, borders and the offset.
 const EXACT: f64 = 1e-5;
@@ -24,19 +25,6 @@ const PRESSED: f64 = 0.01;
 fn patch(shapes: [&SharedShape; 2], pose: &ExactPose, prediction: f64) -> Option<ContactPatch> {
     let [a, b] = shapes.map(|shape| &**shape);
     ContactPatch::between(a, b, &pose.to_f32(), prediction as Real).expect("known shapes")
-}
-
-/// How far a point of a core is from where the core's surface could be.
-fn off_surface(core: &Solid, p: DVec3) -> f64 {
-    match core.points.len() {
-        1 => core.points[0].distance(p),
-        2 => {
-            let [a, b] = [core.points[0], core.points[1]];
-            let share = (p - a).dot(b - a) / (b - a).length_squared();
-            p.distance(a.lerp(b, share.clamp(0.0, 1.0)))
-        }
-        _ => core.distance_to_surface(p),
-    }
 }
 
 /// Everything that holds for any patch.
@@ -65,9 +53,9 @@ fn judge(shapes: [&Rounded; 2], pose: &ExactPose, prediction: f64, what: &str) {
     for vertex in patch.vertices.iter().chain([&patch.deepest]) {
         let on_1 = vertex.on_1 - patch.normal * a.border;
         let on_2 = vertex.on_1 + patch.normal * (vertex.distance + b.border);
-        let off = off_surface(&a.core, on_1);
+        let off = a.core.distance_to_surface(on_1);
         assert!(off <= slack, "{what}: {vertex:?} is {off:e} off shape 1");
-        let off = off_surface(&b.core, pose.inverse().apply(on_2));
+        let off = b.core.distance_to_surface(pose.inverse().apply(on_2));
         assert!(off <= slack, "{what}: {vertex:?} is {off:e} off shape 2");
         let range = exact - slack..=prediction.max(exact) + slack;
         assert!(
@@ -298,11 +286,7 @@ fn faces_meet_where_clipping_in_f64_says() {
 }
 
 fn cuboid(half: [Real; 3]) -> SharedShape {
-    let corner = |i: u32| {
-        let side = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
-        Vector::from(half) * Vector::new(side(0), side(1), side(2))
-    };
-    SharedShape::convex_hull(&(0..8).map(corner).collect::<Vec<_>>()).expect("a box")
+    hulls::cuboid(half.into()).expect("a box")
 }
 
 fn ids(patch: &ContactPatch) -> BTreeSet<ContactId> {

@@ -15,6 +15,7 @@ use isa_gjk::internals::stats::Cost;
 use isa_gjk::internals::support::{Cso, Support};
 use parry3d::math::Pose;
 use testkit::generate::Rng;
+use testkit::oracle::distance_to_segment;
 
 fn pose(translation: DVec3, rotation: DQuat) -> RelativePose {
     let pose = Pose::from_parts(translation.as_vec3(), rotation.as_quat());
@@ -165,17 +166,11 @@ fn a_ball_is_as_far_from_a_box_as_its_centre() {
     assert!(checked > 1000);
 }
 
-/// The distance of a point to a segment.
-fn to_segment(p: DVec3, [a, b]: [DVec3; 2]) -> f64 {
-    let t = (p - a).dot(b - a) / (b - a).length_squared();
-    p.distance(a.lerp(b, t.clamp(0.0, 1.0)))
-}
-
 /// The distance of two segments: at an end, or where their lines are nearest.
 fn between_segments(p: [DVec3; 2], q: [DVec3; 2]) -> f64 {
-    let ends = p.map(|end| to_segment(end, q)).into_iter();
+    let ends = p.map(|end| distance_to_segment(end, q)).into_iter();
     let mut least = ends
-        .chain(q.map(|end| to_segment(end, p)))
+        .chain(q.map(|end| distance_to_segment(end, p)))
         .fold(f64::INFINITY, f64::min);
     let (u, v, offset) = (p[1] - p[0], q[1] - q[0], q[0] - p[0]);
     let n = u.cross(v);
@@ -230,7 +225,8 @@ fn a_point_sees_cylinder_and_cone_in_profile() {
         let outward = DVec2::new(2.0 * half_height, radius);
         let above_flank = outward.dot((profile - flank[1]).truncate());
         if above_flank > 1.0e-6 || at.y < -half_height - 1.0e-6 {
-            let expected = to_segment(profile, flank).min(to_segment(profile, base));
+            let expected =
+                distance_to_segment(profile, flank).min(distance_to_segment(profile, base));
             assert_near(
                 closest(&cone, &Ball::new(0.1), &pose).distance,
                 expected,
