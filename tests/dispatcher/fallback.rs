@@ -127,6 +127,22 @@ fn flat() -> SharedShape {
     SharedShape::new(flat.expect("a closed surface"))
 }
 
+/// A surface over these corners, which no builder has checked.
+fn unchecked(corners: &[Vector], faces: &[[u32; 3]]) -> SharedShape {
+    let hull = ConvexPolyhedron::from_convex_mesh(corners.to_vec(), faces);
+    SharedShape::new(hull.expect("a closed surface"))
+}
+
+fn three_points() -> SharedShape {
+    let corners = [Vector::ZERO, Vector::X, Vector::Z];
+    unchecked(&corners, &[[0, 1, 2], [0, 2, 1]])
+}
+
+fn not_a_number() -> SharedShape {
+    let corners = [Vector::ZERO, Vector::X, Vector::Y, Vector::splat(Real::NAN)];
+    unchecked(&corners, &[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+}
+
 #[test]
 fn only_what_is_not_ours_reaches_the_fallback() {
     let silent = Silent::default();
@@ -164,6 +180,8 @@ fn pairs_with_a_hull_are_counted_by_what_leaves_them() {
         (near, [&ball, &ball], None),
         (near, [&hull, &flat()], Some(Left::HullNotPrepared)),
         (near, [&flat(), &ball], Some(Left::HullNotPrepared)),
+        (near, [&three_points(), &ball], Some(Left::HullNotPrepared)),
+        (near, [&not_a_number(), &hull], Some(Left::HullNotPrepared)),
         (near, [&hull, &degenerate], Some(Left::OtherShape)),
         (
             near,
