@@ -147,7 +147,7 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
     let start = &start[..start.len().min(3)];
     let mut simplex = Simplex::default();
     start.iter().for_each(|&vertex| simplex.push(vertex));
-    let mut ids = start.last().map_or([0; 2], |vertex| vertex.ids);
+    let mut ids = start.last().map(|vertex| vertex.ids).unwrap_or_default();
     let mut nearest = simplex.nearest::<S>(DVec3::ZERO);
     simplex.keep(nearest.face);
     for iteration in 0..MAX_ITERATIONS {

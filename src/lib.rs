@@ -79,6 +79,7 @@ pub mod bevy;
 mod epa;
 mod gjk;
 mod hull;
+mod ids;
 mod manifold;
 mod map_pair;
 mod parry;

@@ -11,8 +11,7 @@ use glam::{DVec3, Vec3};
 use crate::pose::RelativePose;
 use crate::stats::Cost;
 
-/// The index of a vertex of a shape. Smooth shapes, which have none, use 0.
-pub type VertexId = u32;
+pub use crate::ids::{EdgeId, FaceId, VertexId};
 
 /// A convex shape as its support mapping, in its own frame.
 pub trait Support {
@@ -38,13 +37,13 @@ pub trait Support {
     /// A start for [`support`](Self::support) when no similar query is known.
     #[inline]
     fn start_vertex(&self, _dir: DVec3) -> VertexId {
-        0
+        VertexId::default()
     }
 
     /// `vertex` if the shape has it, else some vertex that it has.
     #[inline]
     fn clamp_vertex(&self, _vertex: VertexId) -> VertexId {
-        0
+        VertexId::default()
     }
 
     /// A point inside, off the boundary wherever the shape has volume.
@@ -56,9 +55,6 @@ pub trait Support {
     /// The largest distance of a point from [`center`](Self::center).
     fn radius(&self) -> f64;
 }
-
-/// A face of a polytope: polygon and plane.
-pub type FaceId = u32;
 
 /// The corners of a polygon in their order.
 pub trait FacePoints: ExactSizeIterator<Item = DVec3> + DoubleEndedIterator + Clone {}
@@ -121,13 +117,13 @@ pub trait Polytope: Support {
 
     /// Of the faces on both sides of an edge, the one that looks most in
     /// direction `dir`; some face if there is no such edge.
-    fn face_at_edge(&self, edge: u32, dir: DVec3) -> FaceId;
+    fn face_at_edge(&self, edge: EdgeId, dir: DVec3) -> FaceId;
 
     /// The id of the edge between two neighbouring vertices.
-    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<u32>;
+    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<EdgeId>;
 
     /// The id of the edge from the `i`-th vertex of a face to the next.
-    fn face_edge(&self, face: FaceId, i: usize) -> Option<u32> {
+    fn face_edge(&self, face: FaceId, i: usize) -> Option<EdgeId> {
         let next = (i + 1) % self.face_len(face);
         self.edge_between(self.face_vertex(face, i), self.face_vertex(face, next))
     }
@@ -141,7 +137,7 @@ pub trait Polytope: Support {
     }
 
     /// The end vertices of an edge.
-    fn edge_ends(&self, id: u32) -> Option<[VertexId; 2]>;
+    fn edge_ends(&self, edge: EdgeId) -> Option<[VertexId; 2]>;
 }
 
 /// A vertex of the Minkowski difference: its position and where it comes from (frame 1).

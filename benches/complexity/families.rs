@@ -85,15 +85,7 @@ impl Support for Cloud {
                 best = (height, i);
             }
         }
-        (self.points[best.1], best.1 as VertexId)
-    }
-
-    fn start_vertex(&self, _: DVec3) -> VertexId {
-        0
-    }
-
-    fn clamp_vertex(&self, _: VertexId) -> VertexId {
-        0
+        (self.points[best.1], VertexId::new(best.1))
     }
 
     fn center(&self) -> DVec3 {

@@ -208,7 +208,7 @@ fn death() {
                         pose,
                     };
                     // From the vertex farthest from the cluster: the way leads past all others.
-                    let start = cso.support(DVec3::X, [0; 2], &mut Cost::default());
+                    let start = cso.support(DVec3::X, Default::default(), &mut Cost::default());
                     run::<true, _, _>(&cso, start, direction)
                 })
                 .collect();

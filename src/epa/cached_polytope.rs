@@ -161,14 +161,14 @@ fn vertex_key(vertex: &CsoVertex, center: DVec3) -> [u16; 2] {
     if vertex.w == center {
         CENTER
     } else {
-        vertex.ids.map(|id| id as u16)
+        vertex.ids.map(|id| id.index() as u16)
     }
 }
 
 /// The point with this key, if the shapes have its vertices.
 fn vertex_at<A: Polytope, B: Polytope>(key: [u16; 2], cso: &Cso<'_, A, B>) -> Option<CsoVertex> {
     if key == CENTER {
-        return Some(cso.center_as_vertex([0; 2]));
+        return Some(cso.center_as_vertex([VertexId::default(); 2]));
     }
     let ids @ [id_1, id_2] = key.map(VertexId::from);
     let known = cso.shape_1.clamp_vertex(id_1) == id_1 && cso.shape_2.clamp_vertex(id_2) == id_2;

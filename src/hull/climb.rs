@@ -139,7 +139,7 @@ pub(super) fn extreme_vertices<const N: usize>(
 impl HillClimb<'_> {
     #[inline]
     fn support_value(&self, dir: DVec3, vertex: VertexId) -> f64 {
-        dir.dot(self.points[vertex as usize].as_dvec3())
+        dir.dot(self.points[vertex.index()].as_dvec3())
     }
 
     /// The best neighbour of a vertex, and its height. Four at a time, and selections instead of
@@ -226,7 +226,7 @@ impl HillClimb<'_> {
         let is_above = top.value > self.support_value(dir, preferred) + tie;
         // What fills up the last four repeats its first one, which is preferred among ties.
         if is_above {
-            top.id as VertexId
+            VertexId::new(top.id)
         } else {
             preferred
         }
@@ -241,6 +241,6 @@ pub(super) fn has_short_edge(
     vertex: VertexId,
 ) -> bool {
     let shortest = SHORT_EDGE * radius;
-    let to = |w: u16| points[vertex as usize].distance_squared(points[w as usize]);
+    let to = |w: u16| points[vertex.index()].distance_squared(points[usize::from(w)]);
     graph.neighbors(vertex).any(|w| to(w) < shortest * shortest)
 }

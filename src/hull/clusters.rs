@@ -32,7 +32,7 @@ impl FaceClusters {
         let mut faces = Vec::new();
         for (i, cluster) in clusters.iter().enumerate() {
             for &face in &cluster.members {
-                of_face[face as usize] = i as u16;
+                of_face[usize::from(face)] = i as u16;
             }
             faces.extend_from_slice(&cluster.members);
             faces.extend_from_slice(&cluster.covered_nonmembers);
@@ -48,7 +48,7 @@ impl FaceClusters {
     /// The number of the cluster that `face`, which is in one, belongs to, and all faces under its outline.
     #[inline]
     pub fn containing(&self, face: FaceId) -> (usize, &[u16]) {
-        let cluster = usize::from(self.of_face[face as usize]);
+        let cluster = usize::from(self.of_face[face.index()]);
         let faces = self.first[cluster] as usize..self.first[cluster + 1] as usize;
         (cluster, &self.faces[faces])
     }

@@ -4,7 +4,7 @@ use glam::{DVec3, Vec3};
 
 use super::clusters::FaceClusters;
 use super::graph::pack_edge;
-use crate::support::FaceId;
+use crate::support::{EdgeId, FaceId};
 
 /// The faces and, after them, the outlines of the clusters.
 #[derive(Clone, Debug)]
@@ -56,24 +56,24 @@ impl Faces {
 
     #[inline]
     pub fn normal(&self, face: FaceId) -> DVec3 {
-        self.polygons[face as usize].normal.as_dvec3()
+        self.polygons[face.index()].normal.as_dvec3()
     }
 
     #[inline]
     pub fn offset(&self, face: FaceId) -> f64 {
-        self.polygons[face as usize].offset
+        self.polygons[face.index()].offset
     }
 
     /// The corners of a face or of an outline.
     #[inline]
     pub fn polygon(&self, face: FaceId) -> &[FaceCorner] {
-        let f = face as usize;
+        let f = face.index();
         &self.corners[self.polygons[f].first()..self.polygons[f + 1].first()]
     }
 
     /// The id of the `i`-th edge of a face, or of an outline where that is an edge.
     #[inline]
-    pub fn edge(&self, face: FaceId, i: usize) -> Option<u32> {
+    pub fn edge(&self, face: FaceId, i: usize) -> Option<EdgeId> {
         let corners = self.polygon(face);
         let FaceCorner { vertex, slot } = corners[i];
         let next = corners[if i + 1 < corners.len() { i + 1 } else { 0 }].vertex;
@@ -83,11 +83,11 @@ impl Faces {
     /// The cluster around a face: the id of its outline, and the faces under that.
     #[inline]
     pub fn cluster(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
-        if self.polygons[face as usize].first & IN_CLUSTER == 0 {
+        if self.polygons[face.index()].first & IN_CLUSTER == 0 {
             return None;
         }
         let (cluster, faces) = self.clusters.containing(face);
-        Some(((self.len() + cluster) as FaceId, faces))
+        Some((FaceId::new(self.len() + cluster), faces))
     }
 
     /// Of these faces the one that looks most in direction `dir`.

@@ -5,7 +5,7 @@
 
 use std::iter;
 
-use crate::support::VertexId;
+use crate::support::{EdgeId, VertexId};
 
 /// The id of an edge is its lower vertex, above this many bits, and its slot among that vertex's
 /// neighbours. With at most 2^15 vertices the id has 30 bits, as parry's packed feature ids do.
@@ -85,7 +85,7 @@ impl EdgeGraph {
     /// The first block of a vertex.
     #[inline(always)]
     pub fn block(&self, vertex: VertexId) -> &NeighborBlock {
-        &self.blocks[vertex as usize]
+        &self.blocks[vertex.index()]
     }
 
     /// The block after this one, if there are more neighbours.
@@ -113,7 +113,7 @@ impl EdgeGraph {
     /// The block with this slot, and the slot in it; there may be neither vertex nor slot.
     #[inline(always)]
     fn find(&self, vertex: VertexId, mut slot: usize) -> Option<(&NeighborBlock, usize)> {
-        let mut block = self.blocks.get(vertex as usize)?;
+        let mut block = self.blocks.get(vertex.index())?;
         while slot >= LAST
             && let Some(after) = self.next_block(block)
         {
@@ -152,7 +152,7 @@ impl EdgeGraph {
     }
 
     /// The id of an edge, the same for both directions.
-    pub fn edge_between(&self, from: VertexId, to: VertexId) -> Option<u32> {
+    pub fn edge_between(&self, from: VertexId, to: VertexId) -> Option<EdgeId> {
         Some(pack_edge(from.min(to), self.edge_slot(from, to)?))
     }
 
@@ -174,15 +174,15 @@ impl EdgeGraph {
 
     /// The end vertices of an edge.
     #[inline]
-    pub fn edge_ends(&self, id: u32) -> Option<[VertexId; 2]> {
-        let (from, slot) = unpack_edge(id);
+    pub fn edge_ends(&self, edge: EdgeId) -> Option<[VertexId; 2]> {
+        let (from, slot) = unpack_edge(edge);
         Some([from, self.neighbor(from, slot)?])
     }
 
     /// The faces on both sides of an edge.
     #[inline]
-    pub fn faces_of_edge(&self, id: u32) -> Option<[u16; 2]> {
-        let (from, slot) = unpack_edge(id);
+    pub fn faces_of_edge(&self, edge: EdgeId) -> Option<[u16; 2]> {
+        let (from, slot) = unpack_edge(edge);
         let left = |slot| self.find(from, slot).map(|(block, slot)| block.left[slot]);
         Some([left(slot)?, left(slot + 1).or_else(|| left(0))?])
     }
@@ -194,15 +194,16 @@ impl EdgeGraph {
 
 /// The lower vertex of an edge, and its slot there.
 #[inline]
-fn unpack_edge(id: u32) -> (VertexId, usize) {
-    (id >> SLOT_BITS, (id & ((1 << SLOT_BITS) - 1)) as usize)
+fn unpack_edge(edge: EdgeId) -> (VertexId, usize) {
+    let id = edge.index();
+    (VertexId::new(id >> SLOT_BITS), id & ((1 << SLOT_BITS) - 1))
 }
 
 /// The id of an edge from its lower vertex and its slot there.
 #[inline]
-pub(super) fn pack_edge(low: VertexId, slot: u16) -> u32 {
+pub(super) fn pack_edge(low: VertexId, slot: u16) -> EdgeId {
     debug_assert!(u32::from(slot) < 1 << SLOT_BITS, "a slot of too many bits");
-    low << SLOT_BITS | u32::from(slot)
+    EdgeId::from(u32::from(low) << SLOT_BITS | u32::from(slot))
 }
 
 #[cfg(test)]
@@ -229,7 +230,7 @@ mod tests {
     fn edges_and_faces_are_found_around_vertices_with_any_number_of_neighbors() {
         for sides in (3..40).chain([200]) {
             let hull = pyramid(sides);
-            let vertices = 0..hull.points().len() as VertexId;
+            let vertices = hull.vertex_ids();
             let top = vertices.clone().find(|&v| hull.vertex(v).y > 0.5);
             let top = top.expect("a pyramid has a top");
             let mut around: Vec<u16> = hull.graph.neighbors(top).collect();
@@ -259,7 +260,7 @@ mod tests {
             }
             let beyond = hull.points().len() + BLOCK;
             assert_eq!(hull.graph.neighbor(top, beyond), None);
-            assert_eq!(hull.graph.neighbor(beyond as VertexId, 0), None);
+            assert_eq!(hull.graph.neighbor(VertexId::new(beyond), 0), None);
         }
     }
 }

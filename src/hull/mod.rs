@@ -19,7 +19,7 @@ pub use error::HullError;
 use glam::{DVec3, Vec3};
 
 use crate::stats::Cost;
-use crate::support::{FaceId, FacePoints, Polytope, Support, VertexId};
+use crate::support::{EdgeId, FaceId, FacePoints, Polytope, Support, VertexId};
 use climb::HillClimb;
 use faces::Faces;
 use graph::EdgeGraph;
@@ -62,6 +62,16 @@ impl Hull {
         self.faces.len()
     }
 
+    /// The ids of all vertices.
+    pub fn vertex_ids(&self) -> impl ExactSizeIterator<Item = VertexId> + Clone + use<> {
+        (0..self.points.len()).map(VertexId::new)
+    }
+
+    /// The ids of all faces.
+    pub fn face_ids(&self) -> impl ExactSizeIterator<Item = FaceId> + Clone + use<> {
+        (0..self.face_count()).map(FaceId::new)
+    }
+
     /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 118 bytes
     /// per vertex: 12 for the point, 32 for the neighbours and the faces between them, 48 for the
     /// planes of two faces, 24 for their corners and edges, 2 for the start table. A vertex with more
@@ -80,7 +90,9 @@ impl Hull {
     /// one from memory that is in no cache, and so the processor waits for all of it at once.
     pub(crate) fn extreme_vertices<const N: usize>(&self, dirs: [DVec3; N]) -> [VertexId; N] {
         match &self.search {
-            SupportSearch::Scan(scan) => dirs.map(|dir| scan.extreme_vertex(&self.points, dir, 0)),
+            SupportSearch::Scan(scan) => {
+                dirs.map(|dir| scan.extreme_vertex(&self.points, dir, VertexId::default()))
+            }
             SupportSearch::Climb(start) => {
                 let starts = dirs.map(|dir| start.lookup(dir));
                 climb::extreme_vertices(self.climb(), dirs, starts)
@@ -102,7 +114,7 @@ impl Hull {
     /// that was written to memory by coordinates and is read in pairs is waited for.
     #[inline(never)]
     fn extreme_vertex(&self, x: f64, y: f64, z: f64, start: VertexId, cost: &mut Cost) -> VertexId {
-        debug_assert!((start as usize) < self.points.len(), "no vertex: {start}");
+        debug_assert!(start.index() < self.points.len(), "no vertex: {start}");
         let dir = DVec3::new(x, y, z);
         match &self.search {
             SupportSearch::Scan(scan) => scan.extreme_vertex(&self.points, dir, start),
@@ -127,17 +139,17 @@ impl Support for Hull {
     #[inline]
     fn start_vertex(&self, dir: DVec3) -> VertexId {
         match &self.search {
-            SupportSearch::Scan(_) => 0,
+            SupportSearch::Scan(_) => VertexId::default(),
             SupportSearch::Climb(start) => start.lookup(dir),
         }
     }
 
     #[inline]
     fn clamp_vertex(&self, vertex: VertexId) -> VertexId {
-        if (vertex as usize) < self.points.len() {
+        if vertex.index() < self.points.len() {
             vertex
         } else {
-            0
+            VertexId::default()
         }
     }
 
@@ -155,13 +167,13 @@ impl Support for Hull {
 impl Polytope for Hull {
     #[inline]
     fn vertex(&self, vertex: VertexId) -> DVec3 {
-        self.points[vertex as usize].as_dvec3()
+        self.points[vertex.index()].as_dvec3()
     }
 
     /// The neighbours on the triangulated surface; the first may be repeated.
     #[inline]
     fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
-        self.graph.neighbors(vertex).map(|v| v.into())
+        self.graph.neighbors(vertex).map(VertexId::from)
     }
 
     #[inline]
@@ -171,7 +183,7 @@ impl Polytope for Hull {
 
     #[inline]
     fn has_face(&self, face: FaceId) -> bool {
-        (face as usize) < self.faces.len()
+        face.index() < self.faces.len()
     }
 
     #[inline]
@@ -215,20 +227,20 @@ impl Polytope for Hull {
     }
 
     #[inline]
-    fn face_at_edge(&self, edge: u32, dir: DVec3) -> FaceId {
+    fn face_at_edge(&self, edge: EdgeId, dir: DVec3) -> FaceId {
         match self.graph.faces_of_edge(edge) {
             Some(pair) => self.faces.most_aligned([pair], dir),
-            None => self.face_at_vertex(0, dir),
+            None => self.face_at_vertex(VertexId::default(), dir),
         }
     }
 
     #[inline]
-    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<u32> {
+    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<EdgeId> {
         self.graph.edge_between(from, to)
     }
 
     #[inline]
-    fn face_edge(&self, face: FaceId, i: usize) -> Option<u32> {
+    fn face_edge(&self, face: FaceId, i: usize) -> Option<EdgeId> {
         self.faces.edge(face, i)
     }
 
@@ -238,7 +250,7 @@ impl Polytope for Hull {
     }
 
     #[inline]
-    fn edge_ends(&self, id: u32) -> Option<[VertexId; 2]> {
-        self.graph.edge_ends(id)
+    fn edge_ends(&self, edge: EdgeId) -> Option<[VertexId; 2]> {
+        self.graph.edge_ends(edge)
     }
 }

@@ -63,10 +63,10 @@ impl Scan {
         let mut candidates = self.candidates(dir);
         let mut highest = candidates.trailing_zeros();
         if candidates.is_power_of_two() {
-            return highest;
+            return highest.into();
         }
-        if candidates >> preferred & 1 == 1 {
-            highest = preferred;
+        if candidates >> preferred.index() & 1 == 1 {
+            highest = preferred.into();
         }
         let height = |vertex: u32| dir.dot(points[vertex as usize].as_dvec3());
         let mut most = height(highest);
@@ -78,7 +78,7 @@ impl Scan {
                 (highest, most) = (vertex, other);
             }
         }
-        highest
+        highest.into()
     }
 
     /// A bit for each vertex that may be the highest; there is one at least.
@@ -126,6 +126,11 @@ fn max_no_nan(a: f32, b: f32) -> f32 {
 mod tests {
     use super::*;
 
+    fn extreme_vertex(scan: &Scan, points: &[Vec3], dir: DVec3) -> usize {
+        let vertex = scan.extreme_vertex(points, dir, VertexId::default());
+        vertex.index()
+    }
+
     fn vector(rng: &mut oorandom::Rand64) -> DVec3 {
         DVec3::from([(); 3].map(|()| 2.0 * rng.rand_float() - 1.0))
     }
@@ -156,7 +161,7 @@ mod tests {
                 let height = |p: &Vec3| dir.dot(p.as_dvec3());
                 let most = points.iter().map(height).fold(f64::NEG_INFINITY, f64::max);
                 let first = points.iter().position(|p| height(p) == most);
-                assert_eq!(first, Some(scan.extreme_vertex(&points, dir, 0) as usize));
+                assert_eq!(first, Some(extreme_vertex(&scan, &points, dir)));
             }
         }
     }
@@ -166,7 +171,7 @@ mod tests {
         let points = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::NEG_ONE, Vec3::ONE];
         let scan = Scan::new(&points, DVec3::ZERO, 2.0).expect("few points");
         for dir in [DVec3::ZERO, DVec3::NAN, DVec3::INFINITY, DVec3::MIN] {
-            assert!((scan.extreme_vertex(&points, dir, 0) as usize) < points.len());
+            assert!(extreme_vertex(&scan, &points, dir) < points.len());
         }
     }
 }

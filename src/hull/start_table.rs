@@ -20,11 +20,11 @@ impl StartTable {
     /// the answer of the cell before as a start.
     pub fn new(vertex_count: usize, mut support: impl FnMut(DVec3, VertexId) -> VertexId) -> Self {
         let grid = (vertex_count / 6).isqrt().clamp(1, FINEST);
-        let mut last = 0;
+        let mut last = VertexId::default();
         let vertices = (0..6 * grid * grid)
             .map(|cell| {
                 last = support(cell_direction(grid, cell), last);
-                last as u16
+                last.index() as u16
             })
             .collect();
         Self { grid, vertices }

@@ -9,7 +9,7 @@ use crate::parry::pair::Pair;
 use crate::pose::RelativePose;
 use crate::query::{Feature, PairMemory, Proximity, Sink, vertex_of};
 use crate::stats::{Cost, Stage};
-use crate::support::Support;
+use crate::support::{FaceId, Support, VertexId};
 
 /// Hands the answer to `sink`, and returns the stage that found it.
 #[inline(always)]
@@ -33,7 +33,7 @@ pub(crate) fn run_into(
     sink.separated(&SeparatingAxis {
         axis: near.normal,
         separation: near.signed_distance,
-        ids: [vertex_of(pair.hull, near.features[0]), 0],
+        ids: [vertex_of(pair.hull, near.features[0]), VertexId::default()],
     });
     Stage::Axis
 }
@@ -68,6 +68,6 @@ fn deepest(
         normal,
         on_1,
         on_2: on_1 + normal * signed_distance,
-        features: [Feature::Vertex(vertex), Feature::Face(0)],
+        features: [Feature::Vertex(vertex), Feature::Face(FaceId::default())],
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{FaceId, Polytope, Support, VertexId};
+use crate::support::{EdgeId, FaceId, Polytope, Support, VertexId};
 
 /// The core of a ball around its origin: that one point. The radius is a border, to be taken off
 /// the distance of the cores.
@@ -28,7 +28,7 @@ impl Support for Ball {
     #[inline]
     fn support(&self, _: DVec3, _: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
         cost.supports += 1;
-        (DVec3::ZERO, 0)
+        (DVec3::ZERO, VertexId::default())
     }
 
     /// The border's: a point has no length that a tolerance could be relative to.
@@ -52,7 +52,7 @@ impl Polytope for Ball {
 
     #[inline]
     fn has_face(&self, face: FaceId) -> bool {
-        face == 0
+        face == FaceId::default()
     }
 
     #[inline]
@@ -72,26 +72,26 @@ impl Polytope for Ball {
 
     #[inline]
     fn face_vertex(&self, _: FaceId, _: usize) -> VertexId {
-        0
+        VertexId::default()
     }
 
     #[inline]
     fn face_at_vertex(&self, _: VertexId, _: DVec3) -> FaceId {
-        0
+        FaceId::default()
     }
 
     #[inline]
-    fn face_at_edge(&self, _: u32, _: DVec3) -> FaceId {
-        0
+    fn face_at_edge(&self, _: EdgeId, _: DVec3) -> FaceId {
+        FaceId::default()
     }
 
     #[inline]
-    fn edge_between(&self, _: VertexId, _: VertexId) -> Option<u32> {
+    fn edge_between(&self, _: VertexId, _: VertexId) -> Option<EdgeId> {
         None
     }
 
     #[inline]
-    fn edge_ends(&self, _: u32) -> Option<[VertexId; 2]> {
+    fn edge_ends(&self, _: EdgeId) -> Option<[VertexId; 2]> {
         None
     }
 }

@@ -40,7 +40,7 @@ impl Support for Cone {
         } else {
             on_rim
         };
-        (point, 0)
+        (point, VertexId::default())
     }
 
     #[inline]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{FaceId, Polytope, Support, VertexId};
+use crate::support::{EdgeId, FaceId, Polytope, Support, VertexId};
 
 /// A box by its half extents. Bit `k` of a vertex id is set where coordinate `k` is positive;
 /// face `2 k` looks along axis `k`, face `2 k + 1` against it.
@@ -34,7 +34,8 @@ impl CuboidPolytope {
 
     #[inline]
     fn corner(dir: DVec3) -> VertexId {
-        u32::from(dir.x > 0.0) | u32::from(dir.y > 0.0) << 1 | u32::from(dir.z > 0.0) << 2
+        let [x, y, z] = [dir.x, dir.y, dir.z].map(|x| u32::from(x > 0.0));
+        VertexId::from(x | y << 1 | z << 2)
     }
 }
 
@@ -44,12 +45,13 @@ impl Support for CuboidPolytope {
         cost.supports += 1;
         // Where a coordinate of the direction is zero both signs tie: stay at the start, so
         // that a resting box does not swap its vertices.
-        let mut vertex = Self::corner(dir);
+        let mut vertex = Self::corner(dir).index();
         for k in 0..3 {
             if dir[k] == 0.0 {
-                vertex = vertex & !(1 << k) | start & (1 << k);
+                vertex = vertex & !(1 << k) | start.index() & (1 << k);
             }
         }
+        let vertex = VertexId::new(vertex);
         (self.vertex(vertex), vertex)
     }
 
@@ -60,7 +62,7 @@ impl Support for CuboidPolytope {
 
     #[inline]
     fn clamp_vertex(&self, vertex: VertexId) -> VertexId {
-        vertex & 7
+        VertexId::new(vertex.index() & 7)
     }
 
     #[inline]
@@ -73,30 +75,30 @@ impl Polytope for CuboidPolytope {
     #[inline]
     fn vertex(&self, vertex: VertexId) -> DVec3 {
         let h = self.half_extents;
-        let sign = |k: u32, x: f64| if vertex >> k & 1 == 1 { x } else { -x };
+        let sign = |k: u32, x: f64| if vertex.index() >> k & 1 == 1 { x } else { -x };
         DVec3::new(sign(0, h.x), sign(1, h.y), sign(2, h.z))
     }
 
     #[inline]
     fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
-        (0..3).map(move |k| vertex ^ 1 << k)
+        (0..3).map(move |k| VertexId::new(vertex.index() ^ 1 << k))
     }
 
     #[inline]
     fn has_face(&self, face: FaceId) -> bool {
-        face < 6
+        face.index() < 6
     }
 
     #[inline]
     fn face_normal(&self, face: FaceId) -> DVec3 {
         let mut normal = DVec3::ZERO;
-        normal[face as usize / 2] = if face & 1 == 0 { 1.0 } else { -1.0 };
+        normal[face.index() / 2] = if face.index() & 1 == 0 { 1.0 } else { -1.0 };
         normal
     }
 
     #[inline]
     fn face_offset(&self, face: FaceId) -> f64 {
-        self.half_extents[face as usize / 2]
+        self.half_extents[face.index() / 2]
     }
 
     #[inline]
@@ -106,46 +108,46 @@ impl Polytope for CuboidPolytope {
 
     #[inline]
     fn face_vertex(&self, face: FaceId, i: usize) -> VertexId {
-        FACES[face as usize][i].into()
+        VertexId::new(FACES[face.index()][i].into())
     }
 
     #[inline]
     fn face_at_vertex(&self, vertex: VertexId, dir: DVec3) -> FaceId {
-        let mut best = (f64::NEG_INFINITY, 0);
+        let mut best = (f64::NEG_INFINITY, FaceId::default());
         for k in 0..3 {
-            let positive = vertex >> k & 1 == 1;
+            let positive = vertex.index() >> k & 1 == 1;
             let aligned = if positive { dir[k] } else { -dir[k] };
             if aligned > best.0 {
-                best = (aligned, 2 * k as FaceId + FaceId::from(!positive));
+                best = (aligned, FaceId::new(2 * k + usize::from(!positive)));
             }
         }
         best.1
     }
 
     #[inline]
-    fn face_at_edge(&self, edge: u32, dir: DVec3) -> FaceId {
-        let ends = self.edge_ends(edge).unwrap_or_default();
+    fn face_at_edge(&self, edge: EdgeId, dir: DVec3) -> FaceId {
+        let [from, to] = self.edge_ends(edge).unwrap_or_default();
         // Of the three faces at an end, the edge has those that do not cut across it.
-        let along = (ends[0] ^ ends[1]).trailing_zeros().min(2);
+        let along = (from.index() ^ to.index()).trailing_zeros().min(2);
         let mut across = dir;
-        across[along as usize] = if ends[0] >> along & 1 == 1 {
+        across[along as usize] = if from.index() >> along & 1 == 1 {
             f64::NEG_INFINITY
         } else {
             f64::INFINITY
         };
-        self.face_at_vertex(ends[0], across)
+        self.face_at_vertex(from, across)
     }
 
     #[inline]
-    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<u32> {
-        let (low, high) = (from.min(to), from.max(to));
-        (high < 8 && (low ^ high).is_power_of_two()).then_some(low << 3 | high)
+    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<EdgeId> {
+        let (low, high) = (from.min(to).index(), from.max(to).index());
+        (high < 8 && (low ^ high).is_power_of_two()).then(|| EdgeId::new(low << 3 | high))
     }
 
     #[inline]
-    fn edge_ends(&self, id: u32) -> Option<[VertexId; 2]> {
-        let ends = [id >> 3, id & 7];
-        (self.edge_between(ends[0], ends[1]) == Some(id)).then_some(ends)
+    fn edge_ends(&self, edge: EdgeId) -> Option<[VertexId; 2]> {
+        let ends = [edge.index() >> 3, edge.index() & 7].map(VertexId::new);
+        (self.edge_between(ends[0], ends[1]) == Some(edge)).then_some(ends)
     }
 }
 
@@ -156,7 +158,7 @@ mod tests {
     #[test]
     fn faces_turn_counter_clockwise_on_their_planes() {
         let cuboid = CuboidPolytope::new(DVec3::new(1.0, 2.0, 3.0));
-        for face in 0..6 {
+        for face in (0..6).map(FaceId::new) {
             let corner = |i| cuboid.vertex(cuboid.face_vertex(face, i));
             let normal = cuboid.face_normal(face);
             assert!(

@@ -28,7 +28,8 @@ impl Support for Cylinder {
     fn support(&self, dir: DVec3, _: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
         cost.supports += 1;
         let height = self.half_height.copysign(dir.y);
-        (self.rim.support(dir, height).0, 0)
+        let (point, _) = self.rim.support(dir, height);
+        (point, VertexId::default())
     }
 
     #[inline]

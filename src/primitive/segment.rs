@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{FaceId, Polytope, Support, VertexId};
+use crate::support::{EdgeId, FaceId, Polytope, Support, VertexId};
 
 /// The core of a capsule: the segment along its axis. The radius is a border, to be taken off
 /// the distance of the cores. The ids 0 and 1 name the ends.
@@ -36,16 +36,16 @@ impl Support for Segment {
         let along = dir.dot(b - a);
         // Where both ends tie it stays: a resting capsule does not swap them.
         let end = match along {
-            _ if along > 0.0 => 1,
-            _ if along < 0.0 => 0,
+            _ if along > 0.0 => VertexId::new(1),
+            _ if along < 0.0 => VertexId::new(0),
             _ => start,
         };
-        (self.ends[end as usize], end)
+        (self.ends[end.index()], end)
     }
 
     #[inline]
     fn clamp_vertex(&self, vertex: VertexId) -> VertexId {
-        vertex & 1
+        VertexId::new(vertex.index() & 1)
     }
 
     #[inline]
@@ -64,17 +64,17 @@ impl Support for Segment {
 impl Polytope for Segment {
     #[inline]
     fn vertex(&self, vertex: VertexId) -> DVec3 {
-        self.ends[vertex as usize]
+        self.ends[vertex.index()]
     }
 
     #[inline]
     fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
-        std::iter::once(vertex ^ 1)
+        std::iter::once(VertexId::new(vertex.index() ^ 1))
     }
 
     #[inline]
     fn has_face(&self, face: FaceId) -> bool {
-        face == 0
+        face == FaceId::default()
     }
 
     #[inline]
@@ -94,26 +94,26 @@ impl Polytope for Segment {
 
     #[inline]
     fn face_vertex(&self, _: FaceId, i: usize) -> VertexId {
-        i as VertexId
+        VertexId::new(i)
     }
 
     #[inline]
     fn face_at_vertex(&self, _: VertexId, _: DVec3) -> FaceId {
-        0
+        FaceId::default()
     }
 
     #[inline]
-    fn face_at_edge(&self, _: u32, _: DVec3) -> FaceId {
-        0
+    fn face_at_edge(&self, _: EdgeId, _: DVec3) -> FaceId {
+        FaceId::default()
     }
 
     #[inline]
-    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<u32> {
-        (from.max(to) == 1 && from != to).then_some(0)
+    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<EdgeId> {
+        (from.max(to) == VertexId::new(1) && from != to).then(EdgeId::default)
     }
 
     #[inline]
-    fn edge_ends(&self, id: u32) -> Option<[VertexId; 2]> {
-        (id == 0).then_some([0, 1])
+    fn edge_ends(&self, edge: EdgeId) -> Option<[VertexId; 2]> {
+        (edge == EdgeId::default()).then_some([VertexId::new(0), VertexId::new(1)])
     }
 }

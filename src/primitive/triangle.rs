@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{FaceId, Polytope, Support, VertexId};
+use crate::support::{EdgeId, FaceId, Polytope, Support, VertexId};
 
 /// A triangle. Face 0 is seen counter-clockwise, face 1 is its back.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +34,7 @@ impl Support for TrianglePolytope {
     #[inline]
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
         cost.supports += 1;
-        let mut best = start as usize;
+        let mut best = start.index();
         let mut value = dir.dot(self.vertices[best]);
         for (i, v) in self.vertices.iter().enumerate() {
             let d = dir.dot(*v);
@@ -43,12 +43,16 @@ impl Support for TrianglePolytope {
                 best = i;
             }
         }
-        (self.vertices[best], best as VertexId)
+        (self.vertices[best], VertexId::new(best))
     }
 
     #[inline]
     fn clamp_vertex(&self, vertex: VertexId) -> VertexId {
-        if vertex < 3 { vertex } else { 0 }
+        if vertex.index() < 3 {
+            vertex
+        } else {
+            VertexId::default()
+        }
     }
 
     #[inline]
@@ -65,22 +69,26 @@ impl Support for TrianglePolytope {
 impl Polytope for TrianglePolytope {
     #[inline]
     fn vertex(&self, vertex: VertexId) -> DVec3 {
-        self.vertices[vertex as usize]
+        self.vertices[vertex.index()]
     }
 
     #[inline]
     fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId> {
-        (1..3).map(move |k| (vertex + k) % 3)
+        (1..3).map(move |k| VertexId::new((vertex.index() + k) % 3))
     }
 
     #[inline]
     fn has_face(&self, face: FaceId) -> bool {
-        face < 2
+        face.index() < 2
     }
 
     #[inline]
     fn face_normal(&self, face: FaceId) -> DVec3 {
-        if face == 0 { self.normal } else { -self.normal }
+        if face.index() == 0 {
+            self.normal
+        } else {
+            -self.normal
+        }
     }
 
     #[inline]
@@ -97,29 +105,28 @@ impl Polytope for TrianglePolytope {
 
     #[inline]
     fn face_vertex(&self, face: FaceId, i: usize) -> VertexId {
-        let i = i as VertexId;
-        if face == 0 { i } else { 2 - i }
+        VertexId::new(if face.index() == 0 { i } else { 2 - i })
     }
 
     #[inline]
     fn face_at_vertex(&self, _: VertexId, dir: DVec3) -> FaceId {
-        FaceId::from(self.normal.dot(dir) < 0.0)
+        FaceId::new(usize::from(self.normal.dot(dir) < 0.0))
     }
 
     #[inline]
-    fn face_at_edge(&self, _: u32, dir: DVec3) -> FaceId {
-        self.face_at_vertex(0, dir)
+    fn face_at_edge(&self, _: EdgeId, dir: DVec3) -> FaceId {
+        self.face_at_vertex(VertexId::default(), dir)
     }
 
     #[inline]
-    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<u32> {
-        let (low, high) = (from.min(to), from.max(to));
-        (low < high && high < 3).then_some(low << 2 | high)
+    fn edge_between(&self, from: VertexId, to: VertexId) -> Option<EdgeId> {
+        let (low, high) = (from.min(to).index(), from.max(to).index());
+        (low < high && high < 3).then(|| EdgeId::new(low << 2 | high))
     }
 
     #[inline]
-    fn edge_ends(&self, id: u32) -> Option<[VertexId; 2]> {
-        let ends = [id >> 2, id & 3];
-        (self.edge_between(ends[0], ends[1]) == Some(id)).then_some(ends)
+    fn edge_ends(&self, edge: EdgeId) -> Option<[VertexId; 2]> {
+        let ends = [edge.index() >> 2, edge.index() & 3].map(VertexId::new);
+        (self.edge_between(ends[0], ends[1]) == Some(edge)).then_some(ends)
     }
 }

@@ -1,6 +1,7 @@
 //! What identifies a contact from frame to frame.
 
 use super::types::Feature;
+use crate::support::FaceId;
 
 /// Which contact of a pair this is: the features of both shapes that meet there, in the order of the shapes.
 ///
@@ -14,7 +15,7 @@ use super::types::Feature;
 pub struct ContactId([Feature; 2]);
 
 /// Any face.
-const ANY: Feature = Feature::Face(u32::MAX);
+const ANY: Feature = Feature::Face(FaceId::new(u32::MAX as usize));
 
 impl ContactId {
     /// Where these features meet.

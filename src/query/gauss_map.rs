@@ -61,9 +61,9 @@ pub(super) fn facet_at_vertex<A: Polytope, B: Polytope>(
     let first_1 = first_edge_crossed(cso.shape_1, id_1, [normal, sideways]);
     let first_2 = first_edge_crossed(cso.shape_2, id_2, seen);
     let (to, top) = if first_2.value > first_1.value {
-        ([id_1, first_2.id as VertexId], first_2)
+        ([id_1, VertexId::new(first_2.id)], first_2)
     } else {
-        ([first_1.id as VertexId, id_2], first_1)
+        ([VertexId::new(first_1.id), id_2], first_1)
     };
     if top.value == f64::NEG_INFINITY {
         return None;
@@ -101,8 +101,7 @@ fn first_edge_crossed<P: Polytope>(
 fn edges<P: Polytope>(p: &P, vertex: VertexId) -> impl Iterator<Item = (u64x4, DVec3x4)> {
     let corner = p.vertex(vertex);
     p.neighbors_in_fours(vertex).map(move |ends| {
-        let [a, b, c, d] = ends;
-        let ids = u64x4::new([a.into(), b.into(), c.into(), d.into()]);
+        let ids = u64x4::new(ends.map(|end| u32::from(end).into()));
         (ids, DVec3x4::gather(ends, |end| p.vertex(end)) - corner)
     })
 }
@@ -144,7 +143,7 @@ impl EdgeVertexPair {
         Some(if nearest.value == -1.0 {
             [Feature::Face(face), Feature::Vertex(self.vertex)]
         } else {
-            let level = q.edge_between(self.vertex, nearest.id as VertexId)?;
+            let level = q.edge_between(self.vertex, VertexId::new(nearest.id))?;
             [Feature::Edge(edge), Feature::Edge(level)]
         })
     }
@@ -200,7 +199,7 @@ pub(super) mod tests {
                 pose: &pose,
             };
             let normal = direction(&mut rng);
-            let vertex = cso.support(normal, [0, 0], &mut Cost::default());
+            let vertex = cso.support(normal, cso.start_vertices(normal), &mut Cost::default());
             let mut features =
                 facet_at_vertex(&cso, &vertex, normal).expect("the origin is beside");
             for _ in 0..20 {

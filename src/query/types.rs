@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::gjk::SeparatingAxis;
-use crate::support::{FaceId, VertexId};
+use crate::support::{EdgeId, FaceId, VertexId};
 
 /// A part of a polytope's boundary.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -11,7 +11,7 @@ pub enum Feature {
     /// A vertex.
     Vertex(VertexId),
     /// An edge.
-    Edge(u32),
+    Edge(EdgeId),
     /// A face.
     Face(FaceId),
 }

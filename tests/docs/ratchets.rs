@@ -123,6 +123,18 @@ fn few_files_know_simd() {
     at_most(1, "files import `wide`", &found);
 }
 
+/// Ids are types of their own: only other numbers are cast.
+#[test]
+fn few_integers_are_cast() {
+    for (limit, targets) in [(138, &["usize"][..]), (47, &["u16", "u32"])] {
+        let is_cast = |line: &str| {
+            let mut pairs = words(line).zip(words(line).skip(1));
+            pairs.any(|(word, to)| word == "as" && targets.contains(&to))
+        };
+        at_most(limit, "casts", &places(|line, _| is_cast(line)));
+    }
+}
+
 /// What is left to parry is an error, [`Unsupported`](parry3d::query::Unsupported), not a second option.
 #[test]
 fn options_are_not_nested() {

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use glam::{DQuat, DVec3, EulerRot, Vec3};
 use isa_gjk::internals::stats::Cost;
-use isa_gjk::internals::support::{FaceId, Polytope, Support, VertexId};
+use isa_gjk::internals::support::{Polytope, Support, VertexId};
 use isa_gjk::internals::tolerance::{BOWL_LOSS, SUPPORT_TIE};
 use isa_gjk::{Hull, HullError, HullShape, IsaGjkDispatcher};
 use parry3d::math::Pose;
@@ -29,12 +29,12 @@ fn directions(hull: &Hull, rng: &mut Rng) -> Vec<DVec3> {
     const FACES: usize = 4;
     const TILTS: [f64; 8] = [0.0, 1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
     let mut dirs = Vec::new();
-    for face in (0..hull.face_count()).step_by(hull.face_count() / FACES + 1) {
+    for face in hull.face_ids().step_by(hull.face_count() / FACES + 1) {
         for by in TILTS {
-            let dir = hull.face_normal(face as FaceId) + rng.direction() * by;
+            let dir = hull.face_normal(face) + rng.direction() * by;
             dirs.extend([dir, -dir]);
         }
-        let v = rng.count(0, hull.points().len() - 1) as VertexId;
+        let v = VertexId::new(rng.count(0, hull.points().len() - 1));
         let w = hull.neighbors(v).next().expect("a vertex has neighbours");
         dirs.push((hull.vertex(v) - hull.vertex(w)).cross(rng.direction()));
         dirs.push(rng.direction());
@@ -46,13 +46,13 @@ fn directions(hull: &Hull, rng: &mut Rng) -> Vec<DVec3> {
 /// The most that a climb loses, in plateaus: from every vertex, or of large hulls from every few.
 fn worst_climb(hull: &Hull, rng: &mut Rng) -> f64 {
     const STARTS: usize = 350;
-    let count = hull.points().len();
+    let step = hull.points().len() / STARTS + 1;
     let mut worst = 0.0_f64;
     for dir in directions(hull, rng) {
         let heights = hull.points().iter().map(|p| dir.dot(p.as_dvec3()));
         let most = heights.fold(f64::NEG_INFINITY, f64::max);
-        for start in (0..count).step_by(count / STARTS + 1) {
-            let (found, _) = hull.support(dir, start as VertexId, &mut Cost::default());
+        for start in hull.vertex_ids().step_by(step) {
+            let (found, _) = hull.support(dir, start, &mut Cost::default());
             let lost = most - dir.dot(found);
             worst = worst.max(lost / (SUPPORT_TIE * hull.radius() * dir.length()));
         }

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 use glam::{DQuat, DVec2, DVec3, Vec3};
 use isa_gjk::Hull;
 use isa_gjk::internals::stats::Cost;
-use isa_gjk::internals::support::{Polytope, Support};
+use isa_gjk::internals::support::{FaceId, Polytope, Support, VertexId};
 use isa_gjk::internals::tolerance::{MAX_DENT, SUPPORT_TIE};
 use testkit::cases::hulls;
 use testkit::generate::Rng;
@@ -38,14 +38,17 @@ fn the_plain_climb_is_trapped_in_the_middle_of_an_edge() {
 }
 
 fn neighbors(hull: &Hull) -> impl Fn(usize) -> Vec<usize> + '_ {
-    |v| hull.neighbors(v as u32).map(|w| w as usize).collect()
+    |v| {
+        let around = hull.neighbors(VertexId::new(v));
+        around.map(VertexId::index).collect()
+    }
 }
 
 /// Vertices far from the top in some direction, with all neighbours exactly as high as they are.
-fn traps(hull: &Hull) -> Vec<(u32, DVec3)> {
+fn traps(hull: &Hull) -> Vec<(VertexId, DVec3)> {
     let mut traps = Vec::new();
-    for v in 0..hull.points().len() as u32 {
-        for face in 0..hull.face_count() as u32 {
+    for v in hull.vertex_ids() {
+        for face in hull.face_ids() {
             let down = -hull.face_normal(face);
             let level = down.dot(hull.vertex(v));
             if level > scan(hull, down) - 0.1 * hull.radius() {
@@ -66,9 +69,9 @@ fn the_plain_climb_is_trapped_inside_of_flat_faces() {
         let traps = traps(&hull);
         assert!(!traps.is_empty(), "{name} was made for this");
         for (v, dir) in traps {
-            let value = |v: usize| dir.dot(hull.vertex(v as u32));
+            let value = |v: usize| dir.dot(hull.vertex(VertexId::new(v)));
             let best = scan(&hull, dir);
-            let naive = plain_climb(v as usize, value, neighbors(&hull));
+            let naive = plain_climb(v.index(), value, neighbors(&hull));
             assert!(
                 value(naive) < best - 0.1 * hull.radius(),
                 "{name}: not a trap"
@@ -102,7 +105,13 @@ struct Tally {
 }
 
 impl Tally {
-    fn climb(&mut self, name: &str, hull: &Hull, dir: DVec3, starts: impl Iterator<Item = u32>) {
+    fn climb(
+        &mut self,
+        name: &str,
+        hull: &Hull,
+        dir: DVec3,
+        starts: impl Iterator<Item = VertexId>,
+    ) {
         let best = scan(hull, dir);
         let allowed = SUPPORT_TIE * hull.radius() * dir.length();
         for start in starts {
@@ -149,7 +158,7 @@ fn a_million_random_climbs_end_at_the_top() {
         let last = hull.points().len() - 1;
         for _ in 0..each {
             let dir = rng.direction() * 10_f64.powf(rng.range(-6.0, 6.0));
-            let start = rng.count(0, last) as u32;
+            let start = VertexId::new(rng.count(0, last));
             tally.climb(name, hull, dir, std::iter::once(start));
         }
     }
@@ -162,11 +171,11 @@ fn a_million_random_climbs_end_at_the_top() {
 fn adversarial_directions(hull: &Hull, rng: &mut Rng, most: usize) -> Vec<DVec3> {
     let mut exact = Vec::new();
     for _ in 0..most.min(hull.face_count()) {
-        let face = rng.count(0, hull.face_count() - 1) as u32;
+        let face = FaceId::new(rng.count(0, hull.face_count() - 1));
         exact.push(hull.face_normal(face));
     }
     for _ in 0..most {
-        let v = rng.count(0, hull.points().len() - 1) as u32;
+        let v = VertexId::new(rng.count(0, hull.points().len() - 1));
         let around: Vec<_> = hull.neighbors(v).collect();
         let edge = hull.vertex(around[rng.count(0, around.len() - 1)]) - hull.vertex(v);
         exact.extend([
@@ -186,14 +195,14 @@ fn adversarial_directions(hull: &Hull, rng: &mut Rng, most: usize) -> Vec<DVec3>
 }
 
 /// Every vertex of small hulls; of large ones the vertices around the lowest, and some others.
-fn adversarial_starts(hull: &Hull, dir: DVec3, rng: &mut Rng) -> Vec<u32> {
+fn adversarial_starts(hull: &Hull, dir: DVec3, rng: &mut Rng) -> Vec<VertexId> {
     const SMALL: usize = 64;
     let count = hull.points().len();
     if count <= SMALL {
-        return (0..count as u32).collect();
+        return hull.vertex_ids().collect();
     }
     let (_, lowest) = hull.support(-dir, hull.start_vertex(-dir), &mut Cost::default());
-    let random = (0..8).map(|_| rng.count(0, count - 1) as u32);
+    let random = (0..8).map(|_| VertexId::new(rng.count(0, count - 1)));
     hull.neighbors(lowest)
         .chain([lowest, hull.start_vertex(dir)])
         .chain(random)
@@ -299,7 +308,7 @@ fn climb_needles(length: f64, limit: f64) {
         // Across the needle as often as along it.
         let dirs = (0..200).map(|_| rng.direction() / DVec3::new(1.0, 1.0, length));
         for dir in dirs.collect::<Vec<_>>() {
-            tally.climb(name, hull, dir, 0..hull.points().len() as u32);
+            tally.climb(name, hull, dir, hull.vertex_ids());
         }
     }
     tally.conclude(&format!("needles of 1:{length}"), limit);
@@ -325,14 +334,13 @@ fn climbs_on_the_thinnest_needles_end_near_the_top() {
 #[test]
 fn directions_that_point_nowhere_end_the_climb() {
     let hull = published("rand100");
-    let count = hull.points().len() as u32;
     for dir in [
         DVec3::ZERO,
         DVec3::NAN,
         DVec3::INFINITY,
         DVec3::splat(f64::MIN_POSITIVE),
     ] {
-        let (_, id) = hull.support(dir, 0, &mut Cost::default());
-        assert!(id < count);
+        let (_, id) = hull.support(dir, VertexId::default(), &mut Cost::default());
+        assert!(id.index() < hull.points().len());
     }
 }

@@ -326,7 +326,7 @@ fn thin_clouds_keep_their_corners() {
             assert_eq!(hull.points().len(), 8, "{extents:?}: {corners:?}");
             let cloud: Vec<Vec3> = (0..30).map(|_| place(rng.direction())).collect();
             let hull = Hull::from_points(&cloud).expect("a solid");
-            for face in 0..hull.face_count() as u32 {
+            for face in hull.face_ids() {
                 let height = |p: &Vec3| hull.face_normal(face).dot(p.as_dvec3());
                 let highest = cloud.iter().map(height).fold(f64::MIN, f64::max);
                 let beyond = highest - hull.face_offset(face);
@@ -343,7 +343,7 @@ fn a_needle_of_boxes_edges_is_built() {
             |i: u32| half * Vec3::from_array([0, 1, 2].map(|k| (i >> k & 1) as f32 * 2.0 - 1.0));
         let hull = Hull::from_points(&(0..8).map(corner).collect::<Vec<_>>()).expect("a box");
         assert_eq!((hull.points().len(), hull.face_count()), (8, 6), "{half}");
-        for face in 0..6 {
+        for face in hull.face_ids() {
             assert_eq!(hull.face_len(face), 4);
         }
     }
@@ -444,7 +444,7 @@ fn prisms_and_cones_of_many_sides_are_built_from_points() {
 /// No point of a cloud is outside of its hull, and all corners are points of it.
 fn check_encloses(hull: &Hull, cloud: &[Vec3]) {
     let mut rng = Rng::new(cloud.len() as u128);
-    let faces = (0..hull.face_count() as u32).step_by(1 + hull.face_count() / 50);
+    let faces = hull.face_ids().step_by(1 + hull.face_count() / 50);
     let normals: Vec<DVec3> = faces.map(|f| hull.face_normal(f)).collect();
     let dirs = normals.into_iter().chain((0..50).map(|_| rng.direction()));
     for dir in dirs {

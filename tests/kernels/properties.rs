@@ -78,7 +78,7 @@ fn thin_or_divided() -> impl Strategy<Value = Vec<Vec3>> {
 
 /// How deep the centre is inside.
 fn thickness(hull: &Hull) -> f64 {
-    (0..hull.face_count() as u32)
+    hull.face_ids()
         .map(|f| hull.face_offset(f) - hull.face_normal(f).dot(hull.center()))
         .fold(f64::INFINITY, f64::min)
 }
@@ -135,7 +135,7 @@ fn separation(hulls: [&Hull; 2], pose: &RelativePose, n: DVec3) -> f64 {
 
 /// How far a point is beyond the face it violates most.
 fn outside(hull: &Hull, point: DVec3) -> f64 {
-    (0..hull.face_count() as u32)
+    hull.face_ids()
         .map(|f| hull.face_normal(f).dot(point) - hull.face_offset(f))
         .fold(f64::NEG_INFINITY, f64::max)
 }
@@ -164,8 +164,7 @@ proptest! {
         let shown = separation(hulls, &pose, found.normal);
         prop_assert!((shown - found.signed_distance).abs() <= TOLERANCE * size(hulls), "{shown} {found:?}");
         let mut rng = Rng::new(seed.into());
-        let faces = hulls[0].face_count() as u32;
-        let normals = (0..faces).map(|f| hulls[0].face_normal(f).normalize());
+        let normals = hulls[0].face_ids().map(|f| hulls[0].face_normal(f).normalize());
         let near_it = (0..50).map(|_| (found.normal + rng.direction() * 0.1).normalize());
         for n in normals.chain(near_it) {
             let other = separation(hulls, &pose, n);
@@ -240,7 +239,7 @@ proptest! {
             let was = near(hulls, &old, &PairMemory::None);
             for memory in [
                 PairMemory::Contact(was.normal, was.features),
-                PairMemory::Axis(was.normal, [0, 0]),
+                PairMemory::Axis(was.normal, Default::default()),
             ] {
                 let warm = near(hulls, &pair.pose, &memory).signed_distance;
                 prop_assert!((warm - cold).abs() <= TOLERANCE * size(hulls), "{cold} {warm} {memory:?}");

@@ -177,7 +177,7 @@ impl<'a> Cast<'a> {
 /// How far a point is beyond the plane it violates most.
 fn outside(hull: &Hull, point: DVec3) -> f64 {
     use isa_gjk::internals::support::Polytope;
-    (0..hull.face_count() as u32)
+    hull.face_ids()
         .map(|f| hull.face_normal(f).dot(point) - hull.face_offset(f))
         .fold(f64::NEG_INFINITY, f64::max)
 }

@@ -12,7 +12,7 @@ use isa_gjk::internals::primitive::{Ball, Cone, CuboidPolytope, Cylinder, Segmen
 use isa_gjk::internals::ray_cast::{RayCast, ray_cast};
 use isa_gjk::internals::simplex::Voronoi;
 use isa_gjk::internals::stats::Cost;
-use isa_gjk::internals::support::{Cso, Support};
+use isa_gjk::internals::support::{Cso, Support, VertexId};
 use parry3d::math::Pose;
 use testkit::generate::Rng;
 use testkit::oracle::distance_to_segment;
@@ -93,7 +93,7 @@ fn supports_are_extreme_points() {
 #[test]
 fn a_segment_keeps_the_end_it_has_when_both_tie() {
     let segment = Segment::new([DVec3::NEG_X, DVec3::X], 0.1);
-    for start in [0, 1] {
+    for start in [0, 1].map(VertexId::new) {
         let (_, id) = segment.support(DVec3::Y, start, &mut Cost::default());
         assert_eq!(id, start);
     }

@@ -8,7 +8,7 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use glam::DVec3;
 use isa_gjk::internals::hull::Hull;
 use isa_gjk::internals::stats::Cost;
-use isa_gjk::internals::support::Support;
+use isa_gjk::internals::support::{Support, VertexId};
 use parry3d::shape::SupportMap;
 use testkit::pair::hull;
 
@@ -39,7 +39,7 @@ fn supports(criterion: &mut Criterion) {
             let polyhedron = shape.as_convex_polyhedron().expect("made as one");
             let hull = Hull::from_points(polyhedron.points()).expect("a hull of a hull");
             let mut turning = directions.iter().cycle();
-            let mut last = 0;
+            let mut last = VertexId::default();
             group.bench_function(BenchmarkId::new("isa-gjk", vertices), |b| {
                 b.iter(|| {
                     let dir = *turning.next().expect("a cycle has no end");

@@ -4,7 +4,7 @@ use glam::DVec3;
 use isa_gjk::internals::manifold::ContactPoint;
 use isa_gjk::internals::pose::RelativePose;
 use isa_gjk::internals::stats::Cost;
-use isa_gjk::internals::support::{Polytope, Support};
+use isa_gjk::internals::support::{FaceId, Polytope, Support, VertexId};
 use isa_gjk::query::{Answer, Feature, PairMemory};
 use isa_gjk::{Hull, Stage};
 
@@ -76,7 +76,7 @@ impl Snapshot<'_> {
     /// The picture, magnified around the contact or the gap.
     pub fn draw(&self, zoom: f64) -> String {
         let points = [0, 1].map(|i| {
-            let vertices = 0..self.hulls[i].points().len() as u32;
+            let vertices = self.hulls[i].vertex_ids();
             vertices.map(move |vertex| self.vertex(i, vertex))
         });
         let mut canvas = Canvas::new(
@@ -107,7 +107,7 @@ impl Snapshot<'_> {
             width: if front { 1.0 } else { 0.4 },
             ..Style::new(HULLS[i])
         };
-        for face in 0..self.hulls[i].face_count() as u32 {
+        for face in self.hulls[i].face_ids() {
             if canvas.faces_viewer(self.face_normal(i, face)) == front {
                 canvas.polygon(&self.face(i, face), style);
             }
@@ -240,7 +240,7 @@ impl Snapshot<'_> {
         self.hulls[0].radius().min(self.hulls[1].radius())
     }
 
-    fn vertex(&self, i: usize, vertex: u32) -> DVec3 {
+    fn vertex(&self, i: usize, vertex: VertexId) -> DVec3 {
         let local = self.hulls[i].vertex(vertex);
         if i == 0 {
             local
@@ -249,14 +249,14 @@ impl Snapshot<'_> {
         }
     }
 
-    fn face(&self, i: usize, face: u32) -> Vec<DVec3> {
+    fn face(&self, i: usize, face: FaceId) -> Vec<DVec3> {
         let corners = 0..self.hulls[i].face_len(face);
         corners
             .map(|k| self.vertex(i, self.hulls[i].face_vertex(face, k)))
             .collect()
     }
 
-    fn face_normal(&self, i: usize, face: u32) -> DVec3 {
+    fn face_normal(&self, i: usize, face: FaceId) -> DVec3 {
         let local = self.hulls[i].face_normal(face);
         if i == 0 {
             local

@@ -34,10 +34,10 @@ pub(in crate::hull) fn grow_clusters(
         let mut next = 0;
         while let Some(&member) = members.get(next) {
             for other in adjacent_faces(faces, graph, member) {
-                let fits = members.len() < MAX_MEMBERS && !taken[other as usize];
-                if fits && plane.accepts(points, faces, other) {
-                    taken[other as usize] = true;
-                    members.push(other as u16);
+                let fits = members.len() < MAX_MEMBERS && !taken[usize::from(other)];
+                if fits && plane.accepts(points, faces, other.into()) {
+                    taken[usize::from(other)] = true;
+                    members.push(other);
                 }
             }
             next += 1;
@@ -55,11 +55,11 @@ pub(in crate::hull) fn grow_clusters(
 }
 
 /// The faces beyond the sides of a face.
-fn adjacent_faces(faces: &Faces, graph: &EdgeGraph, face: u16) -> impl Iterator<Item = FaceId> {
+fn adjacent_faces(faces: &Faces, graph: &EdgeGraph, face: u16) -> impl Iterator<Item = u16> {
     let sides = 0..faces.polygon(face.into()).len();
     sides.filter_map(move |i| {
         let [left, right] = graph.faces_of_edge(faces.edge(face.into(), i)?)?;
-        Some(if left == face { right } else { left }.into())
+        Some(if left == face { right } else { left })
     })
 }
 

@@ -97,7 +97,7 @@ impl Faces {
             return Vec::new();
         }
         // Without a plane a face may join any cluster.
-        let has_planes = (0..self.len() as FaceId).all(|face| self.normal(face) != DVec3::ZERO);
+        let has_planes = (0..self.len()).all(|face| self.normal(FaceId::new(face)) != DVec3::ZERO);
         let mut may_grow = vec![!has_planes; self.len()];
         for h in (0..3 * face_of.len() as HalfEdge).filter(|&h| flat.contains(h)) {
             let [here, beyond] = [h, mesh.twin(h)].map(|h| face_of[triangle(h)]);

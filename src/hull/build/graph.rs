@@ -50,7 +50,7 @@ impl EdgeGraph {
     /// Marks the vertices at which a climb must look into ties.
     pub fn mark_plateau_search(&mut self, needs_plateau_search: impl Fn(&Self, VertexId) -> bool) {
         for v in 0..self.blocks.len() {
-            if needs_plateau_search(self, v as VertexId) {
+            if needs_plateau_search(self, VertexId::new(v)) {
                 self.blocks[v].to[PLATEAU_SEARCH] |= MARK;
             }
         }

@@ -15,7 +15,7 @@ use crate::hull::scan::{self, Scan};
 use crate::hull::start_table::StartTable;
 use crate::hull::{Hull, HullError, SupportSearch};
 use crate::stats::Cost;
-use crate::support::{FaceId, Polytope};
+use crate::support::Polytope;
 use crate::tolerance::MIN_EXTENT;
 
 /// The vertices and triangles of the hull of a point cloud.
@@ -99,7 +99,7 @@ impl Hull {
             Some(scan) => SupportSearch::Scan(scan),
             None => {
                 graph.mark_plateau_search(|graph, v| {
-                    at_flat_edge[v as usize] || climb::has_short_edge(&exact, graph, radius, v)
+                    at_flat_edge[v.index()] || climb::has_short_edge(&exact, graph, radius, v)
                 });
                 let climb = HillClimb {
                     points: &points,
@@ -126,7 +126,7 @@ impl Hull {
 
     /// The centre must be clearly inside of every face.
     fn validate_interior(&self) -> Result<(), HullError> {
-        let deep_inside = (0..self.faces.len() as FaceId).all(|f| {
+        let deep_inside = self.face_ids().all(|f| {
             self.face_offset(f) - self.face_normal(f).dot(self.center) > MIN_EXTENT * self.radius
         });
         deep_inside.then_some(()).ok_or(HullError::Flat)

@@ -118,7 +118,7 @@ pub(super) fn validate_no_bowl(
         let corner = faces.polygon(face)[0].vertex.into();
         let (summit, height) = climb::nearest_summit(climb, normal, corner);
         if height - faces.offset(face) > BOWL * climb.radius {
-            return Err(HullError::NotConvex(summit as usize));
+            return Err(HullError::NotConvex(summit.index()));
         }
     }
     Ok(())

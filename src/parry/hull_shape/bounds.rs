@@ -40,7 +40,7 @@ impl HullShape {
         let [x, y, z] = axes.map(|axis| axis.as_dvec3());
         let hull = self.hull();
         let ends = hull.extreme_vertices([-x, -y, -z, x, y, z]);
-        let reach = |i: usize| axes[i % 3].dot(hull.points()[ends[i] as usize]);
+        let reach = |i: usize| axes[i % 3].dot(hull.points()[ends[i].index()]);
         Aabb::new(
             pose.translation + Vector::new(reach(0), reach(1), reach(2)),
             pose.translation + Vector::new(reach(3), reach(4), reach(5)),

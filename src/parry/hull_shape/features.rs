@@ -16,10 +16,10 @@ impl Hull {
         let vertex = self.support_vertex(dir);
         let face = self.face_at_vertex(vertex, dir);
         let Some(at) = self.place_around(face, vertex) else {
-            return FeatureId::Face(face);
+            return FeatureId::Face(face.into());
         };
         if self.face_normal(face).dot(dir) >= FEATURE_ANGLE_COS {
-            return FeatureId::Face(face);
+            return FeatureId::Face(face.into());
         }
         let len = self.face_len(face);
         let level = |other: &VertexId| {
@@ -31,7 +31,9 @@ impl Hull {
             .into_iter()
             .find(level)
             .and_then(|other| self.edge_between(vertex, other))
-            .map_or(FeatureId::Vertex(vertex), FeatureId::Edge)
+            .map_or(FeatureId::Vertex(vertex.into()), |edge| {
+                FeatureId::Edge(edge.into())
+            })
     }
 
     /// Where a vertex stands among the corners of a face; `None` if it lies within the face.
@@ -43,9 +45,9 @@ impl Hull {
     /// faces; `None` if there is no such feature.
     pub(super) fn feature_normal(&self, feature: FeatureId) -> Option<Vector> {
         let normal = match feature {
-            FeatureId::Face(face) if self.has_face(face) => self.face_normal(face),
-            FeatureId::Edge(edge) => self.mean_normal(&self.edge_ends(edge)?)?,
-            FeatureId::Vertex(vertex) => self.mean_normal(&[vertex])?,
+            FeatureId::Face(face) if self.has_face(face.into()) => self.face_normal(face.into()),
+            FeatureId::Edge(edge) => self.mean_normal(&self.edge_ends(edge.into())?)?,
+            FeatureId::Vertex(vertex) => self.mean_normal(&[vertex.into()])?,
             FeatureId::Face(_) | FeatureId::Unknown => return None,
         };
         Some(normal.as_vec3())
@@ -53,7 +55,7 @@ impl Hull {
 
     /// The mean normal of the faces that have all of `corners`.
     fn mean_normal(&self, corners: &[VertexId]) -> Option<DVec3> {
-        (0..self.face_count() as FaceId)
+        self.face_ids()
             .filter(|&face| {
                 corners
                     .iter()
@@ -101,12 +103,14 @@ impl PolygonalFeatureMap for Hull {
         let mut count = 0;
         for (slot, i) in self.far_corners(face, first).enumerate() {
             let edge = self.edge_between(corner(i), corner(i + 1));
-            out_feature.vertices[slot] = self.points()[corner(i) as usize];
-            out_feature.vids[slot] = PackedFeatureId::vertex(corner(i));
-            out_feature.eids[slot] = edge.map_or(PackedFeatureId::UNKNOWN, PackedFeatureId::edge);
+            out_feature.vertices[slot] = self.points()[corner(i).index()];
+            out_feature.vids[slot] = PackedFeatureId::vertex(corner(i).into());
+            out_feature.eids[slot] = edge.map_or(PackedFeatureId::UNKNOWN, |edge| {
+                PackedFeatureId::edge(edge.into())
+            });
             count = slot + 1;
         }
-        out_feature.fid = PackedFeatureId::face(face);
+        out_feature.fid = PackedFeatureId::face(face.into());
         out_feature.num_vertices = count;
     }
 

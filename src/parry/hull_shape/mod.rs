@@ -195,8 +195,8 @@ impl TryFrom<ConvexPolyhedron> for HullShape {
 /// The faces of a hull as triangle fans.
 fn triangles(hull: &Hull) -> Vec<[u32; 3]> {
     let fan = |face: FaceId| {
-        let corner = move |i| hull.face_vertex(face, i);
+        let corner = move |i| hull.face_vertex(face, i).into();
         (2..hull.face_len(face)).map(move |i| [corner(0), corner(i - 1), corner(i)])
     };
-    (0..hull.face_count() as FaceId).flat_map(fan).collect()
+    hull.face_ids().flat_map(fan).collect()
 }

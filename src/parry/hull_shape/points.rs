@@ -31,7 +31,7 @@ impl Hull {
         if self.points().len() <= SCAN_UP_TO {
             return point_cloud_support_point(dir, self.points());
         }
-        self.points()[self.support_vertex(dir.as_dvec3()) as usize]
+        self.points()[self.support_vertex(dir.as_dvec3()).index()]
     }
 }
 
@@ -40,11 +40,13 @@ impl HullShape {
     fn nearest_plane(&self, point: DVec3) -> (FaceId, f64) {
         let hull = self.hull();
         let height = |f| hull.face_normal(f).dot(point) - hull.face_offset(f);
-        (0..hull.face_count() as FaceId)
+        let none = (FaceId::default(), f64::NEG_INFINITY);
+        hull.face_ids()
             .map(|f| (f, height(f)))
-            .fold((0, f64::NEG_INFINITY), |best, other| {
-                if other.1 > best.1 { other } else { best }
-            })
+            .fold(
+                none,
+                |best, other| if other.1 > best.1 { other } else { best },
+            )
     }
 
     /// A point's projection: on the boundary, or on itself if it is inside of a `solid` hull.
@@ -72,7 +74,7 @@ impl HullShape {
             // Never apart: no distance is farther than infinity.
             Outcome::Overlapping(_) | Outcome::Unsure(_) | Outcome::Separated(_) => {
                 let (on_face, face) = self.project_to_face(point.as_dvec3());
-                (on_face, FeatureId::Face(face))
+                (on_face, FeatureId::Face(face.into()))
             }
         }
     }
@@ -91,19 +93,7 @@ struct Point;
 
 impl Support for Point {
     fn support(&self, _: DVec3, _: VertexId, _: &mut Cost) -> (DVec3, VertexId) {
-        (DVec3::ZERO, 0)
-    }
-
-    fn start_vertex(&self, _: DVec3) -> VertexId {
-        0
-    }
-
-    fn clamp_vertex(&self, _: VertexId) -> VertexId {
-        0
-    }
-
-    fn center(&self) -> DVec3 {
-        DVec3::ZERO
+        (DVec3::ZERO, VertexId::default())
     }
 
     fn radius(&self) -> f64 {

@@ -30,7 +30,7 @@ impl RayCast for HullShape {
         let normal = (side * self.hull().face_normal(crossing.face)).as_vec3();
         // Beyond what f32 holds is nowhere.
         (time.is_finite() && time <= max_time_of_impact)
-            .then(|| RayIntersection::new(time, normal, FeatureId::Face(crossing.face)))
+            .then(|| RayIntersection::new(time, normal, FeatureId::Face(crossing.face.into())))
     }
 }
 
@@ -46,9 +46,12 @@ impl HullShape {
     fn cut(&self, ray: &Ray) -> Option<(Crossing, Crossing)> {
         let hull = self.hull();
         let (origin, dir) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
-        let at = |time| Crossing { time, face: 0 };
+        let at = |time| Crossing {
+            time,
+            face: FaceId::default(),
+        };
         let (mut entry, mut exit) = (at(f64::NEG_INFINITY), at(f64::INFINITY));
-        for face in 0..hull.face_count() as FaceId {
+        for face in hull.face_ids() {
             let normal = hull.face_normal(face);
             let depth = hull.face_offset(face) - normal.dot(origin);
             let speed = normal.dot(dir);

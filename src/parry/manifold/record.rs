@@ -108,11 +108,12 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
             None => {
                 let n2 = manifold.local_n2;
                 // Casts saturate, and NaN becomes 0: any vector is some pair of vertices.
-                PairMemory::Axis(self.frame.to_kernel(axis), [n2.x as u32, n2.y as u32])
+                let vertices = [n2.x, n2.y].map(|x| VertexId::from(x as u32));
+                PairMemory::Axis(self.frame.to_kernel(axis), vertices)
             }
             Some(point) => match (unpack(point.fid1), unpack(point.fid2)) {
                 (Some(f1), Some(f2)) => PairMemory::Contact(axis, order.to_kernel([f1, f2])),
-                _ => PairMemory::Axis(axis, [0, 0]),
+                _ => PairMemory::Axis(axis, Default::default()),
             },
         }
     }
@@ -132,12 +133,13 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
         debug_assert!(
             vertices
                 .iter()
-                .all(|&vertex| vertex < 1 << f32::MANTISSA_DIGITS)
+                .all(|&vertex| vertex.index() < 1 << f32::MANTISSA_DIGITS)
         );
         self.manifold.points.clear();
         self.manifold.local_n1 = self.frame.to_stored(axis).as_vec3();
         // Whole numbers up to 2^24 are exact in f32.
-        self.manifold.local_n2 = Vec3::new(vertices[0] as f32, vertices[1] as f32, 0.0);
+        let [x, y] = map_pair(vertices, |vertex| u32::from(vertex) as f32);
+        self.manifold.local_n2 = Vec3::new(x, y, 0.0);
     }
 
     /// The contact normal in f32, as both shapes see it, outwards.
@@ -193,13 +195,13 @@ const FACE: u32 = 0b11 << 30;
 /// As parry packs feature ids; its own constructors are not inlined across crates.
 #[inline]
 pub(super) fn pack(feature: Feature) -> PackedFeatureId {
-    let (Feature::Vertex(id) | Feature::Edge(id) | Feature::Face(id)) = feature;
+    let (kind, id) = match feature {
+        Feature::Vertex(v) => (VERTEX, u32::from(v)),
+        Feature::Edge(e) => (EDGE, e.into()),
+        Feature::Face(f) => (FACE, f.into()),
+    };
     debug_assert_eq!(id & KIND, 0, "an id of too many bits");
-    PackedFeatureId(match feature {
-        Feature::Vertex(v) => VERTEX | v,
-        Feature::Edge(e) => EDGE | e,
-        Feature::Face(f) => FACE | f,
-    })
+    PackedFeatureId(kind | id)
 }
 
 /// What an old contact and a new one between the same features have in common, of four contacts at once
@@ -219,9 +221,9 @@ pub(super) fn feature_keys([a, b]: [u32x4; 2]) -> [u32x4; 2] {
 fn unpack(id: PackedFeatureId) -> Option<Feature> {
     let code = id.0 & !KIND;
     match id.0 & KIND {
-        VERTEX => Some(Feature::Vertex(code)),
-        EDGE => Some(Feature::Edge(code)),
-        FACE => Some(Feature::Face(code)),
+        VERTEX => Some(Feature::Vertex(code.into())),
+        EDGE => Some(Feature::Edge(code.into())),
+        FACE => Some(Feature::Face(code.into())),
         _ => None,
     }
 }
@@ -240,12 +242,24 @@ impl ContactId {
 mod tests {
     use super::*;
 
+    fn vertex(id: u32) -> Feature {
+        Feature::Vertex(id.into())
+    }
+
+    fn edge(id: u32) -> Feature {
+        Feature::Edge(id.into())
+    }
+
+    fn face(id: u32) -> Feature {
+        Feature::Face(id.into())
+    }
+
     #[test]
     fn packed_features_are_parrys() {
-        assert_eq!(pack(Feature::Vertex(7)), PackedFeatureId::vertex(7));
-        assert_eq!(pack(Feature::Edge(8)), PackedFeatureId::edge(8));
-        assert_eq!(pack(Feature::Face(9)), PackedFeatureId::face(9));
-        for feature in [Feature::Vertex(1), Feature::Edge(2), Feature::Face(3)] {
+        assert_eq!(pack(vertex(7)), PackedFeatureId::vertex(7));
+        assert_eq!(pack(edge(8)), PackedFeatureId::edge(8));
+        assert_eq!(pack(face(9)), PackedFeatureId::face(9));
+        for feature in [vertex(1), edge(2), face(3)] {
             assert_eq!(unpack(pack(feature)), Some(feature));
         }
         assert_eq!(unpack(PackedFeatureId::UNKNOWN), None);
@@ -254,7 +268,7 @@ mod tests {
     /// Impulses go from one contact to another if these have one id.
     #[test]
     fn ids_are_what_impulses_are_matched_by() {
-        let features = [1, 2].map(|i| [Feature::Vertex(i), Feature::Edge(i), Feature::Face(i)]);
+        let features = [1, 2].map(|i| [vertex(i), edge(i), face(i)]);
         let features = features.as_flattened();
         let pairs = features
             .iter()

@@ -25,7 +25,7 @@ use crate::map_pair::map_pair;
 use crate::pose::RelativePose;
 use crate::query::types::{Feature, Proximity};
 use crate::stats::Cost;
-use crate::support::{Cso, CsoVertex, Polytope, VertexId};
+use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
 use crate::tolerance::PARALLEL_EDGES;
 use crate::tuning::SHALLOW;
 
@@ -51,12 +51,12 @@ pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
         }
         [Feature::Face(f1), other] if cso.shape_1.has_face(f1) => {
             let start = vertex_of(cso.shape_2, other);
-            test.face(cso.shape_1, cso.shape_2, cso.pose, [f1, start], cost)
+            test.face(cso.shape_1, cso.shape_2, cso.pose, (f1, start), cost)
         }
         [other, Feature::Face(f2)] if cso.shape_2.has_face(f2) => {
             let start = vertex_of(cso.shape_1, other);
             let pose = cso.pose.inverse();
-            test.face(cso.shape_2, cso.shape_1, &pose, [f2, start], cost)
+            test.face(cso.shape_2, cso.shape_1, &pose, (f2, start), cost)
                 .reversed(cso.pose)
         }
         _ => Verdict::Degenerate,
@@ -79,9 +79,9 @@ pub fn vertices<A: Polytope, B: Polytope>(
 pub(crate) fn vertex_of(shape: &impl Polytope, feature: Feature) -> VertexId {
     let vertex = match feature {
         Feature::Vertex(v) => v,
-        Feature::Edge(e) => shape.edge_ends(e).map_or(0, |ends| ends[0]),
+        Feature::Edge(e) => shape.edge_ends(e).unwrap_or_default()[0],
         Feature::Face(f) if shape.has_face(f) => shape.face_vertex(f, 0),
-        Feature::Face(_) => 0,
+        Feature::Face(_) => VertexId::default(),
     };
     shape.clamp_vertex(vertex)
 }
@@ -105,7 +105,7 @@ fn spanned(
     mut ids: impl Iterator<Item = VertexId>,
     outward: DVec3,
 ) -> Feature {
-    let first = ids.next().unwrap_or(0);
+    let first = ids.next().unwrap_or_default();
     let mut second = None;
     for id in ids {
         match second {
@@ -131,15 +131,15 @@ struct FacetTest {
 }
 
 impl FacetTest {
-    /// A face of `p` against `q`; everything in the frame of `p`. `ids` are the face and a
-    /// vertex of `q` to climb from.
+    /// A face of `p` against `q`; everything in the frame of `p`. The climb over `q` begins at
+    /// `start`.
     #[inline]
     fn face<P: Polytope, Q: Polytope>(
         &self,
         p: &P,
         q: &Q,
         q_pose: &RelativePose,
-        [face, start]: [u32; 2],
+        (face, start): (FaceId, VertexId),
         cost: &mut Cost,
     ) -> Verdict {
         let normal = p.face_normal(face);

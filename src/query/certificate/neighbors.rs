@@ -210,7 +210,7 @@ mod tests {
             };
             let mut cost = Cost::default();
             let normal = direction(&mut rng);
-            let vertex = cso.support(normal, [0, 0], &mut cost);
+            let vertex = cso.support(normal, cso.start_vertices(normal), &mut cost);
             let mut next = gauss_map::facet_at_vertex(&cso, &vertex, normal);
             let candidate = (0..20).find_map(|_| {
                 match facet::certify(&cso, next?, f64::INFINITY, DEPTH_GAP, &mut cost) {
