@@ -4,6 +4,7 @@
 pub mod budget;
 pub mod bytes;
 pub mod cases;
+pub mod curved;
 pub mod divided;
 pub mod families;
 pub mod generate;

@@ -1,5 +1,6 @@
 //! What the kernels answer: hulls, supports, simplices, GJK, EPA and ray casts.
 
+mod curved_oracle;
 mod every_start;
 mod hill_climbing;
 mod hull_errors;
