@@ -11,7 +11,7 @@ use super::contacts::{Contacts, MAX_POINTS};
 use super::reduce::Selection;
 use super::scratch::ClipScratch;
 use crate::pose::{RelativePose, is_unit};
-use crate::query::{Feature, Proximity, vertex_of};
+use crate::query::{Feature, Proximity};
 use crate::simd::{DVec3x4, LANES, f64x4, to_f32x4};
 use crate::support::{FaceId, Polytope};
 use crate::tuning::{EDGE_ON, SAME_POINT};
@@ -26,7 +26,7 @@ pub fn half_space_contacts(
     max_distance: f64,
     scratch: &mut ClipScratch,
 ) -> Contacts {
-    let witness = vertex_of(shape, proximity.features[0]);
+    let witness = proximity.features[0].vertex(shape);
     let (normal, origin) = (proximity.normal, proximity.on_1);
     debug_assert!(is_unit(normal), "no unit vector: {normal}");
     let distance = |on_1: DVec3x4| {

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec2};
 
 use super::clip::{Clipper, VertexOrigin};
-use super::patch::{SurfacePair, outline_edge};
+use super::patch::SurfacePair;
 use super::scratch::ClipScratch;
 use crate::query::{Feature, Proximity};
 use crate::simd::f32x4;
@@ -88,8 +88,8 @@ impl SurfacePair<'_> {
         let [f1, f2] = self.polygons();
         let mut features = [0, 1].map(|shape| Feature::Face(self.surfaces[shape].face_at(at)));
         match side {
-            Some((0, i)) => features[0] = outline_edge(cso.shape_1, f1, i),
-            Some((_, i)) => features[1] = outline_edge(cso.shape_2, f2, i),
+            Some((0, i)) => features[0] = Feature::of_side(cso.shape_1, f1, i),
+            Some((_, i)) => features[1] = Feature::of_side(cso.shape_2, f2, i),
             None => {}
         }
         features

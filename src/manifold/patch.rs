@@ -110,8 +110,8 @@ impl<'s> SurfacePair<'s> {
         let frame = ContactFrame::new(proximity.on_1, normal);
         let frame_2 = frame.in_frame_2(cso.pose);
         let [f1, f2] = [
-            contact_face(cso.shape_1, proximity.features[0], normal),
-            contact_face(cso.shape_2, proximity.features[1], -frame_2.normal),
+            proximity.features[0].face(cso.shape_1, normal),
+            proximity.features[1].face(cso.shape_2, -frame_2.normal),
         ];
         let surfaces = [
             ContactSurface::new(&frame, cso.shape_1, f1, 1.0, more_1)?,
@@ -251,8 +251,8 @@ impl<'s> SurfacePair<'s> {
             VertexOrigin::Beside(0, vertex) => [Feature::Vertex(vertex), face(1)],
             VertexOrigin::Beside(_, vertex) => [face(0), Feature::Vertex(vertex)],
             VertexOrigin::Crossing(i, j) => [
-                outline_edge(cso.shape_1, f1, i.into()),
-                outline_edge(cso.shape_2, f2, j.into()),
+                Feature::of_side(cso.shape_1, f1, i.into()),
+                Feature::of_side(cso.shape_2, f2, j.into()),
             ],
         }
     }
@@ -260,25 +260,5 @@ impl<'s> SurfacePair<'s> {
     #[inline]
     pub fn polygons(&self) -> [FaceId; 2] {
         [self.surfaces[0].polygon, self.surfaces[1].polygon]
-    }
-}
-
-/// The face that is in contact: the feature itself, or that next to it which faces the other
-/// shape most.
-#[inline]
-fn contact_face(shape: &impl Polytope, feature: Feature, outward: DVec3) -> FaceId {
-    match feature {
-        Feature::Face(face) => face,
-        Feature::Vertex(vertex) => shape.face_at_vertex(vertex, outward),
-        Feature::Edge(edge) => shape.face_at_edge(edge, outward),
-    }
-}
-
-/// The `i`-th side of a polygon: an edge, or its first corner where it cuts across faces.
-#[inline]
-pub(super) fn outline_edge(shape: &impl Polytope, polygon: FaceId, i: usize) -> Feature {
-    match shape.face_edge(polygon, i) {
-        Some(edge) => Feature::Edge(edge),
-        None => Feature::Vertex(shape.face_vertex(polygon, i)),
     }
 }

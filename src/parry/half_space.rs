@@ -7,7 +7,7 @@ use crate::gjk::SeparatingAxis;
 use crate::parry::convert::HalfSpace;
 use crate::parry::pair::Pair;
 use crate::pose::RelativePose;
-use crate::query::{Feature, PairMemory, Proximity, Sink, vertex_of};
+use crate::query::{Feature, PairMemory, Proximity, Sink};
 use crate::stats::{Cost, Stage};
 use crate::support::{FaceId, Support, VertexId};
 
@@ -33,7 +33,7 @@ pub(crate) fn run_into(
     sink.separated(&SeparatingAxis {
         axis: near.normal,
         separation: near.signed_distance,
-        ids: [vertex_of(pair.hull, near.features[0]), VertexId::default()],
+        ids: [near.features[0].vertex(pair.hull), VertexId::default()],
     });
     Stage::Axis
 }
@@ -56,10 +56,9 @@ fn deepest(
     let (hull, normal_2) = (pair.hull, pair.other.normal);
     let normal = -pose.direction_to_1(normal_2);
     let start = match *memory {
-        PairMemory::Axis(_, [vertex, _]) | PairMemory::Contact(_, [Feature::Vertex(vertex), _]) => {
-            hull.clamp_vertex(vertex)
-        }
-        _ => hull.start_vertex(normal),
+        PairMemory::None => hull.start_vertex(normal),
+        PairMemory::Axis(_, [vertex, _]) => hull.clamp_vertex(vertex),
+        PairMemory::Contact(_, [feature, _]) => feature.vertex(hull),
     };
     let (on_1, vertex) = hull.support(normal, start, cost);
     let signed_distance = normal_2.dot(pose.point_to_2(on_1));

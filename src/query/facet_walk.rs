@@ -9,8 +9,9 @@ use glam::DVec3;
 
 use super::certificate::verdict::{FacetEdge, Verdict};
 use super::certificate::{facet, vertex_edge};
+use super::feature::{self, Feature};
 use super::pipeline::{Found, Start};
-use super::types::{Answer, Feature};
+use super::types::Answer;
 use super::{Query, gauss_map};
 use crate::map_pair::map_pair;
 use crate::stats::Stage;
@@ -123,7 +124,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                 if let Some(answer) = at_corner {
                     return ControlFlow::Break(Some((answer, walk.stage)));
                 }
-                self.restart_at(walk.normal, facet::vertices(self.cso, walk.features))
+                self.restart_at(walk.normal, feature::vertices(self.cso, walk.features))
             }
         };
         match next {

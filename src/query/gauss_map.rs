@@ -12,7 +12,7 @@
 use glam::DVec3;
 
 use super::certificate::verdict::FacetEdge;
-use super::types::Feature;
+use super::feature::Feature;
 use crate::arg_max::{ArgMax, ArgMax4};
 use crate::map_pair::map_pair;
 use crate::pose::RelativePose;
@@ -155,6 +155,7 @@ pub(super) mod tests {
     use crate::hull::Hull;
     use crate::query::certificate::facet;
     use crate::query::certificate::verdict::Verdict;
+    use crate::query::vertices;
     use crate::stats::Cost;
     use glam::Vec3;
     use parry3d::math::Pose;
@@ -178,7 +179,7 @@ pub(super) mod tests {
 
     /// Of all vertices of the difference, how far the outermost is beyond the plane of `features`.
     fn excess(cso: &Cso<'_, Hull, Hull>, features: [Feature; 2], normal: DVec3) -> f64 {
-        let [v1, v2] = facet::vertices(cso, features);
+        let [v1, v2] = vertices(cso, features);
         let outermost = cso.support(normal, [v1, v2], &mut Cost::default()).w;
         let corner = cso.shape_1.vertex(v1) - cso.pose.point_to_1(cso.shape_2.vertex(v2));
         normal.dot(outermost - corner)

@@ -26,6 +26,7 @@ mod certificate;
 mod contact_id;
 mod error;
 mod facet_walk;
+mod feature;
 mod gauss_map;
 mod patch;
 mod pipeline;
@@ -35,12 +36,14 @@ mod types;
 mod witness;
 
 pub use bounds::{Certificate, SeparationBounds};
-pub(crate) use certificate::facet::{vertex_of, vertices};
 pub use contact_id::ContactId;
+pub(crate) use contact_id::contact_keys;
 pub use error::QueryError;
+pub use feature::Feature;
+pub(crate) use feature::vertices;
 pub use patch::{ContactPatch, PatchVertex};
 pub(crate) use pipeline::{AxisOnly, Distance, Full, Sink};
-pub use types::{Answer, Feature, PairMemory, Proximity};
+pub use types::{Answer, PairMemory, Proximity};
 
 pub use crate::epa::EpaScratch;
 pub use crate::gjk::SeparatingAxis;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::contact_id::ContactId;
-use super::types::Feature;
+use super::feature::Feature;
 
 /// The region in which two shapes touch, overlap, or are within a distance of each other: the polygon in
 /// which the faces that meet lie over each other. Contact manifolds keep at most four of its corners.

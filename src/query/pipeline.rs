@@ -7,8 +7,9 @@ use glam::DVec3;
 
 use super::Query;
 use super::certificate::verdict::Verdict;
+use super::feature::Feature;
 use super::gauss_map;
-use super::types::{Answer, Feature, PairMemory, Proximity};
+use super::types::{Answer, PairMemory, Proximity};
 use crate::gjk::{self, AxisTest, SeparatingAxis};
 use crate::stats::Stage;
 use crate::support::{CsoVertex, Polytope, Support, VertexId};

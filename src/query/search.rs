@@ -1,13 +1,13 @@
 //! GJK and EPA, from wherever the cheaper stages have come.
 
-use super::certificate::{facet, neighbors};
+use super::certificate::neighbors;
+use super::feature::{self, Feature};
 use super::pipeline::{Found, Start};
 use super::seeds::EpaSeeds;
 use super::types::{Answer, Proximity};
 use super::{Query, witness};
 use crate::epa::{self, DepthSearch, Penetration};
 use crate::gjk::{self, Closest, Outcome, SeparatingAxis, Simplex};
-use crate::query::Feature;
 use crate::simplex::Preferred;
 use crate::stats::Stage;
 use crate::support::{CsoVertex, Polytope, Support};
@@ -135,7 +135,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             normal: closest.normal,
             on_1: closest.on_1,
             on_2: closest.on_2,
-            features: facet::of_simplex(self.cso, closest.simplex.vertices(), closest.normal),
+            features: feature::of_simplex(self.cso, closest.simplex.vertices(), closest.normal),
         })
     }
 

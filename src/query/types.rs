@@ -2,19 +2,9 @@
 
 use glam::DVec3;
 
+use super::feature::Feature;
 use crate::gjk::SeparatingAxis;
-use crate::support::{EdgeId, FaceId, VertexId};
-
-/// A part of a polytope's boundary.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Feature {
-    /// A vertex.
-    Vertex(VertexId),
-    /// An edge.
-    Edge(EdgeId),
-    /// A face.
-    Face(FaceId),
-}
+use crate::support::VertexId;
 
 /// What is remembered of a pair from one frame to the next.
 #[derive(Clone, Copy, Debug, PartialEq)]

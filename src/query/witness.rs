@@ -6,7 +6,7 @@
 
 use glam::DVec3;
 
-use super::certificate::facet;
+use super::feature;
 use super::types::Proximity;
 use crate::epa::Penetration;
 use crate::gjk::{self, Outcome};
@@ -30,7 +30,7 @@ pub(super) fn of_depth<A: Polytope, B: Polytope>(
         features,
     };
     let at_hand = || {
-        let features = facet::of_simplex(cso, depth.face.iter(), depth.normal);
+        let features = feature::of_simplex(cso, depth.face.iter(), depth.normal);
         proximity([depth.on_1, depth.on_2], features)
     };
     let radius = cso.min_radius();
@@ -49,7 +49,7 @@ pub(super) fn of_depth<A: Polytope, B: Polytope>(
         // Whatever the bounds, its points are on their shapes.
         Outcome::Disjoint(closest) | Outcome::Unsure(closest) => {
             let simplex = closest.simplex.vertices();
-            let features = facet::of_simplex(cso, simplex, depth.normal);
+            let features = feature::of_simplex(cso, simplex, depth.normal);
             proximity([closest.on_1, closest.on_2 - way], features)
         }
         _ => at_hand(),

@@ -12,7 +12,7 @@ use super::record::{self, KernelManifold};
 use crate::manifold::{Contacts, MAX_POINTS};
 use crate::map_pair::map_pair;
 use crate::parry::order::PairOrder;
-use crate::query::Feature;
+use crate::query::{Feature, contact_keys};
 use crate::simd::{f32x4, u32x4};
 
 impl<M, C: Default + Copy> KernelManifold<'_, M, C> {
@@ -107,7 +107,7 @@ impl ManifoldPoints {
     }
 }
 
-/// What the contacts of a manifold are between, see [`record::feature_keys`]: by the first shape, and by the
+/// What the contacts of a manifold are between, see [`contact_keys`]: by the first shape, and by the
 /// second.
 struct FeatureKeys([u32x4; 2]);
 
@@ -133,7 +133,7 @@ impl FeatureKeys {
         debug_assert!(count <= MAX_POINTS, "{count} contacts");
         let counted = u32x4::new([0, 1, 2, 3]).simd_lt(u32x4::splat(count as u32));
         let features = map_pair([first, second], |row| u32x4::new(row) & counted);
-        Self(record::feature_keys(features))
+        Self(contact_keys(features))
     }
 
     /// A bit for each that is the same as one of the others.

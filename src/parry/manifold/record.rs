@@ -25,7 +25,6 @@ use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
 use crate::pose::{RelativePose, is_unit};
 use crate::query::{ContactId, Feature, PairMemory};
-use crate::simd::u32x4;
 use crate::support::{Cso, Support, VertexId};
 use crate::tolerance::NEARLY_UNIT;
 
@@ -187,45 +186,15 @@ fn unit(v: Vec3) -> Option<DVec3> {
     ((v.length_squared() - 1.0).abs() < NEARLY_UNIT).then_some(v)
 }
 
-const KIND: u32 = 0b11 << 30;
-const VERTEX: u32 = 0b01 << 30;
-const EDGE: u32 = 0b10 << 30;
-const FACE: u32 = 0b11 << 30;
-
 /// As parry packs feature ids; its own constructors are not inlined across crates.
 #[inline]
 pub(super) fn pack(feature: Feature) -> PackedFeatureId {
-    let (kind, id) = match feature {
-        Feature::Vertex(v) => (VERTEX, u32::from(v)),
-        Feature::Edge(e) => (EDGE, e.into()),
-        Feature::Face(f) => (FACE, f.into()),
-    };
-    debug_assert_eq!(id & KIND, 0, "an id of too many bits");
-    PackedFeatureId(kind | id)
-}
-
-/// What an old contact and a new one between the same features have in common, of four contacts at once
-/// by the packed features of both shapes. A vertex that moves on from one face to the next stays what it
-/// is.
-#[inline(always)]
-pub(super) fn feature_keys([a, b]: [u32x4; 2]) -> [u32x4; 2] {
-    let [kind, face] = [u32x4::splat(KIND), u32x4::splat(FACE)];
-    let vertex_and_face = ((a ^ b) & kind).simd_eq(u32x4::splat(VERTEX ^ FACE));
-    map_pair([a, b], |id| {
-        let unnamed = vertex_and_face & (id & kind).simd_eq(face);
-        unnamed.bitselect(face, id)
-    })
+    PackedFeatureId(feature.code())
 }
 
 #[inline]
 fn unpack(id: PackedFeatureId) -> Option<Feature> {
-    let code = id.0 & !KIND;
-    match id.0 & KIND {
-        VERTEX => Some(Feature::Vertex(code.into())),
-        EDGE => Some(Feature::Edge(code.into())),
-        FACE => Some(Feature::Face(code.into())),
-        _ => None,
-    }
+    Feature::from_code(id.0)
 }
 
 impl ContactId {
@@ -263,26 +232,5 @@ mod tests {
             assert_eq!(unpack(pack(feature)), Some(feature));
         }
         assert_eq!(unpack(PackedFeatureId::UNKNOWN), None);
-    }
-
-    /// Impulses go from one contact to another if these have one id.
-    #[test]
-    fn ids_are_what_impulses_are_matched_by() {
-        let features = [1, 2].map(|i| [vertex(i), edge(i), face(i)]);
-        let features = features.as_flattened();
-        let pairs = features
-            .iter()
-            .flat_map(|a| features.iter().map(|b| [*a, *b]));
-        let pairs: Vec<[Feature; 2]> = pairs.collect();
-        let keys = |pair: &[Feature; 2]| {
-            let packed = map_pair(*pair, |feature| u32x4::splat(pack(feature).0));
-            feature_keys(packed).map(|key| key.to_array()[0])
-        };
-        for a in &pairs {
-            for b in &pairs {
-                let same = ContactId::new(*a) == ContactId::new(*b);
-                assert_eq!(same, keys(a) == keys(b), "{a:?} and {b:?}");
-            }
-        }
     }
 }

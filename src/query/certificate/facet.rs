@@ -23,7 +23,8 @@ use super::verdict::{FacetEdge, Verdict};
 use crate::gjk::SeparatingAxis;
 use crate::map_pair::map_pair;
 use crate::pose::RelativePose;
-use crate::query::types::{Feature, Proximity};
+use crate::query::feature::Feature;
+use crate::query::types::Proximity;
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
 use crate::tolerance::PARALLEL_EDGES;
@@ -50,78 +51,16 @@ pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
             }
         }
         [Feature::Face(f1), other] if cso.shape_1.has_face(f1) => {
-            let start = vertex_of(cso.shape_2, other);
+            let start = other.vertex(cso.shape_2);
             test.face(cso.shape_1, cso.shape_2, cso.pose, (f1, start), cost)
         }
         [other, Feature::Face(f2)] if cso.shape_2.has_face(f2) => {
-            let start = vertex_of(cso.shape_1, other);
+            let start = other.vertex(cso.shape_1);
             let pose = cso.pose.inverse();
             test.face(cso.shape_2, cso.shape_1, &pose, (f2, start), cost)
                 .reversed(cso.pose)
         }
         _ => Verdict::Degenerate,
-    }
-}
-
-/// A vertex of each feature, valid for its shape.
-pub fn vertices<A: Polytope, B: Polytope>(
-    cso: &Cso<'_, A, B>,
-    features: [Feature; 2],
-) -> [VertexId; 2] {
-    [
-        vertex_of(cso.shape_1, features[0]),
-        vertex_of(cso.shape_2, features[1]),
-    ]
-}
-
-/// A vertex of a feature, valid for its shape.
-#[inline]
-pub(crate) fn vertex_of(shape: &impl Polytope, feature: Feature) -> VertexId {
-    let vertex = match feature {
-        Feature::Vertex(v) => v,
-        Feature::Edge(e) => shape.edge_ends(e).unwrap_or_default()[0],
-        Feature::Face(f) if shape.has_face(f) => shape.face_vertex(f, 0),
-        Feature::Face(_) => VertexId::default(),
-    };
-    shape.clamp_vertex(vertex)
-}
-
-/// The features that the vertices of a simplex span. `normal` in frame 1, from shape 1 to 2.
-pub(in crate::query) fn of_simplex<'v, A: Polytope, B: Polytope>(
-    cso: &Cso<'_, A, B>,
-    simplex: impl Iterator<Item = &'v CsoVertex> + Clone,
-    normal: DVec3,
-) -> [Feature; 2] {
-    let ids_2 = simplex.clone().map(|v| v.ids[1]);
-    let outward_2 = -cso.pose.direction_to_2(normal);
-    [
-        spanned(cso.shape_1, simplex.map(|v| v.ids[0]), normal),
-        spanned(cso.shape_2, ids_2, outward_2),
-    ]
-}
-
-fn spanned(
-    shape: &impl Polytope,
-    mut ids: impl Iterator<Item = VertexId>,
-    outward: DVec3,
-) -> Feature {
-    let first = ids.next().unwrap_or_default();
-    let mut second = None;
-    for id in ids {
-        match second {
-            _ if id == first => {}
-            None => second = Some(id),
-            Some(s) if s == id => {}
-            Some(_) => return Feature::Face(shape.face_at_vertex(first, outward)),
-        }
-    }
-    match second {
-        None => Feature::Vertex(first),
-        // Two vertices without an edge between them are a diagonal of a face.
-        Some(s) => match shape.edge_between(first, s) {
-            Some(edge) => Feature::Edge(edge),
-            None => Feature::Face(shape.face_at_vertex(first, outward)),
-        },
     }
 }
 

@@ -12,12 +12,10 @@ use glam::DVec3;
 
 use super::polygon::ball_is_inside;
 use super::verdict::FacetEdge;
+use crate::query::feature::{CORNERS, Feature};
 use crate::query::gauss_map;
-use crate::query::types::{Feature, Proximity};
-use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
-
-/// Of facets with more corners nothing is proved here. They are large; so mostly their own pyramid does.
-const MAX_CORNERS: usize = 4;
+use crate::query::types::Proximity;
+use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 
 /// A ball that looks over more sides than these is larger than the facet, and than those around.
 const MAX_SIDES: usize = 2;
@@ -37,7 +35,7 @@ pub(in crate::query) fn contains_ball<A: Polytope, B: Polytope>(
     let Some(here) = Facet::new(cso, facet.features) else {
         return false;
     };
-    let open: [bool; MAX_CORNERS] =
+    let open: [bool; CORNERS] =
         array::from_fn(|i| i < here.len && !pyramids.edge_contains_ball(&here, i));
     let mut open_sides = (0..here.len).filter(|&i| open[i]);
     open_sides.clone().count() <= MAX_SIDES
@@ -108,7 +106,7 @@ impl Pyramids {
 
 /// A facet of the difference, or what may be one: a polygon of its points.
 struct Facet {
-    corners: [CsoVertex; MAX_CORNERS],
+    corners: [CsoVertex; CORNERS],
     len: usize,
     /// A point inside.
     middle: DVec3,
@@ -143,33 +141,21 @@ impl Facet {
     }
 }
 
-/// The corners of the polygon that two features span, in turn, and how many they are.
+/// The corners of the polygon that two features span, in turn, and how many they are. `None` for more than
+/// [`CORNERS`]: such a facet is large, so mostly its own pyramid proves the depth.
 fn corners<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     features: [Feature; 2],
-) -> Option<([[VertexId; 2]; MAX_CORNERS], usize)> {
-    match features {
-        [Feature::Edge(e1), Feature::Edge(e2)] => {
-            let ([a, b], [c, d]) = (cso.shape_1.edge_ends(e1)?, cso.shape_2.edge_ends(e2)?);
-            let around = [[a, c], [b, c], [b, d], [a, d]];
-            Some((array::from_fn(|i| around[i % 4]), 4))
-        }
-        [Feature::Face(f1), Feature::Vertex(v2)] => {
-            let (corners, len) = face_corners(cso.shape_1, f1)?;
-            Some((corners.map(|v1| [v1, v2]), len))
-        }
-        [Feature::Vertex(v1), Feature::Face(f2)] => {
-            let (corners, len) = face_corners(cso.shape_2, f2)?;
-            Some((corners.map(|v2| [v1, v2]), len))
-        }
+) -> Option<([[VertexId; 2]; CORNERS], usize)> {
+    let (corners_1, count_1) = features[0].corners(cso.shape_1);
+    let (corners_2, count_2) = features[1].corners(cso.shape_2);
+    let [[a, b, ..], [c, d, ..]] = [corners_1, corners_2];
+    match (count_1, count_2) {
+        (2, 2) => Some(([[a, c], [b, c], [b, d], [a, d]], 4)),
+        (3..=CORNERS, 1) => Some((corners_1.map(|v1| [v1, c]), count_1)),
+        (1, 3..=CORNERS) => Some((corners_2.map(|v2| [a, v2]), count_2)),
         _ => None,
     }
-}
-
-fn face_corners(shape: &impl Polytope, face: FaceId) -> Option<([VertexId; MAX_CORNERS], usize)> {
-    let len = shape.face_len(face);
-    let corners = || array::from_fn(|i| shape.face_vertex(face, i % len));
-    (3..=MAX_CORNERS).contains(&len).then(|| (corners(), len))
 }
 
 #[cfg(test)]

@@ -8,9 +8,10 @@ use glam::DVec3;
 
 use crate::gjk::{self, AxisTest};
 use crate::map_pair::map_pair;
-use crate::query::types::{Answer, Feature, Proximity};
+use crate::query::feature::Feature;
+use crate::query::types::{Answer, Proximity};
 use crate::stats::Cost;
-use crate::support::{Cso, Polytope, VertexId};
+use crate::support::{Cso, Polytope};
 use crate::tolerance::MIN_DIRECTED_DISTANCE;
 
 /// The answer that `features` prove, if both bounds meet or the lower one is out of reach.
@@ -21,8 +22,8 @@ pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
     tolerance: f64,
     cost: &mut Cost,
 ) -> Option<Answer> {
-    let ends_1 = ends(cso.shape_1, features[0])?;
-    let ends_2 = ends(cso.shape_2, features[1])?;
+    let ends_1 = features[0].ends(cso.shape_1)?;
+    let ends_2 = features[1].ends(cso.shape_2)?;
     if ends_1[0] != ends_1[1] && ends_2[0] != ends_2[1] {
         return None;
     }
@@ -48,15 +49,6 @@ pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
                 features,
             }))
         }
-    }
-}
-
-/// The ends of an edge, or a vertex twice. `None` for a feature of another shape, remembered from before.
-fn ends(shape: &impl Polytope, feature: Feature) -> Option<[VertexId; 2]> {
-    match feature {
-        Feature::Vertex(vertex) => (shape.clamp_vertex(vertex) == vertex).then_some([vertex; 2]),
-        Feature::Edge(edge) => shape.edge_ends(edge),
-        Feature::Face(_) => None,
     }
 }
 
