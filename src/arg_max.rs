@@ -2,9 +2,6 @@
 //!
 //! There is no branch for each value, since which one is the greatest so far is not predictable.
 
-// perf: values of four lanes go through memory in calls, which cost a tenth of a manifold's update
-// without link-time optimisation. So what is inlined here is inlined always.
-
 use std::ops::BitAnd;
 
 use glam::DVec3;

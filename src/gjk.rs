@@ -8,9 +8,6 @@
 //! `v` nearest to the origin. A support point `w` in direction `-v` bounds the distance from
 //! below by `v·w / |v|`, `|v|` bounds it from above: every answer carries both bounds.
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 mod simplex;
 
 pub use simplex::Simplex;

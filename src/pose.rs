@@ -1,8 +1,5 @@
 //! The pose of the second shape in the frame of the first, in f64.
 
-// perf: calls instead of inlined code, here and in the other files on the way to a query, add 6 % of
-// instructions to separated/32.
-
 use glam::{DMat3, DQuat, DVec3};
 use parry3d::math::Pose;
 

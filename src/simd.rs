@@ -1,8 +1,5 @@
 //! Four values at once: vectors coordinate by coordinate, and masks of lanes.
 
-// perf: values of four lanes go through memory in calls, which cost a tenth of a manifold's update
-// without link-time optimisation. So what is inlined here is inlined always.
-
 use std::ops::{Add, Sub};
 
 use glam::{DVec3, Vec3};

@@ -1,8 +1,5 @@
 //! What the kernels see of a shape: extreme points with vertex ids, and of a polytope its faces.
 
-// perf: calls instead of inlined code, here and in the other files on the way to a query, add 6 % of
-// instructions to separated/32.
-
 use std::cmp::Ordering;
 use std::iter;
 

@@ -1,8 +1,5 @@
 //! The simplex of a search: vertices of the Minkowski difference.
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 use glam::DVec3;
 
 use crate::simplex::{DistanceSubalgorithm, Nearest};

@@ -23,9 +23,6 @@
 //! which a climb would lose more: with deeper dents, folds, or two layers. The limits are those
 //! measured in `tests/kernels/hill_climbing.rs`.
 
-// perf: calls instead of inlined code, here and in the other files on the way to a query, add 6 % of
-// instructions to separated/32.
-
 use std::array;
 
 use glam::{DVec3, Vec3};

@@ -1,8 +1,5 @@
 //! The edge graph of a triangulated hull: the neighbours of each vertex, and the faces between them.
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 use std::iter;
 
 use crate::support::{EdgeId, VertexId};

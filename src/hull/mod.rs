@@ -1,9 +1,6 @@
 //! Convex hulls prepared for coherent queries: edge graph, faces, and a way to extreme vertices,
 //! which is a climb from a start-vertex table, or for small ones a scan.
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 pub(crate) mod build;
 mod climb;
 mod clusters;

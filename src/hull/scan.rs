@@ -4,9 +4,6 @@
 //! In f32 first, with known error; of the vertices that may be highest after that, of which there
 //! is mostly one, the highest in f64. So the answer is exact.
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 use std::array;
 use std::ops::RangeInclusive;
 

@@ -10,9 +10,6 @@
 //! all that is computed for four corners. So everything is computed in fours, for all corners that
 //! there can be, and then those that there are are gathered.
 
-// perf: values of four lanes go through memory in calls, which cost a tenth of a manifold's update
-// without link-time optimisation. So what is inlined here is inlined always.
-
 use crate::simd::f32x4;
 
 use super::clip_vertices::ClipVertices;

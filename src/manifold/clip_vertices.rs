@@ -1,8 +1,5 @@
 //! The corners of an intersection, one after the other.
 
-// perf: values of four lanes go through memory in calls, which cost a tenth of a manifold's update
-// without link-time optimisation. So what is inlined here is inlined always.
-
 use crate::simd::f32x4;
 use glam::Vec2;
 

@@ -1,8 +1,5 @@
 //! Contacts with a half-space: corners of the face that lies on it.
 
-// perf: values of four lanes go through memory in calls, which cost a tenth of a manifold's update
-// without link-time optimisation. So what is inlined here is inlined always.
-
 use glam::Vec2;
 
 use super::clip::Clipper;

@@ -1,8 +1,5 @@
 //! The two surfaces in contact, seen along the contact normal.
 
-// perf: values of four lanes go through memory in calls, which cost a tenth of a manifold's update
-// without link-time optimisation. So what is inlined here is inlined always.
-
 use crate::simd::f32x4;
 use glam::{DVec3, Vec2};
 

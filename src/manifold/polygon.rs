@@ -1,8 +1,5 @@
 //! Polygons in the contact plane, in rows of four corners.
 
-// perf: values of four lanes go through memory in calls, which cost a tenth of a manifold's update
-// without link-time optimisation. So what is inlined here is inlined always.
-
 use crate::simd::{ALL, LANES, f32x4, first_lanes, lane_mask};
 use glam::Vec2;
 

@@ -1,8 +1,5 @@
 //! Which corners of the contact patch to keep. They are looked at in fours.
 
-// perf: values of four lanes go through memory in calls, which cost a tenth of a manifold's update
-// without link-time optimisation. So what is inlined here is inlined always.
-
 use std::ops::RangeInclusive;
 
 use glam::Vec2;

@@ -1,8 +1,5 @@
 //! Hulls over half-spaces: one support against the plane is the whole query.
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 use crate::gjk::SeparatingAxis;
 use crate::parry::convert::HalfSpace;
 use crate::parry::pair::Pair;

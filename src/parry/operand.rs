@@ -1,8 +1,5 @@
 //! The shapes of a pair, and where a hull among them is prepared.
 
-// perf: calls instead of inlined code, here and in the other files on the way to a query, add 6 % of
-// instructions to separated/32.
-
 use parry3d::math::Real;
 use parry3d::shape::{ConvexPolyhedron, RoundConvexPolyhedron, Shape, ShapeType};
 

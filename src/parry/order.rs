@@ -1,8 +1,5 @@
 //! The order of a pair.
 
-// perf: calls instead of inlined code, here and in the other files on the way to a query, add 6 % of
-// instructions to separated/32.
-
 use crate::pose::{RelativePose, ValidPose};
 
 /// Which of the caller's shapes comes first here. The kernels have the hull first, and the routines for

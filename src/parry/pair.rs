@@ -1,8 +1,5 @@
 //! From parry's shapes to polytopes that the kernels can work on.
 
-// perf: calls instead of inlined code, here and in the other files on the way to a query, add 6 % of
-// instructions to separated/32.
-
 use parry3d::math::{Pose, Real};
 use parry3d::query::Unsupported;
 use parry3d::shape::{PolygonalFeatureMap, Shape, ShapeType, TypedShape};

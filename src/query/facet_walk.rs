@@ -1,8 +1,5 @@
 //! From facet to facet of the Minkowski difference, to where the origin projects into one.
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 use std::ops::ControlFlow;
 
 use glam::DVec3;

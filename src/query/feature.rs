@@ -1,9 +1,6 @@
 //! Parts of a polytope's boundary. The kinds of features are told apart here; the stages of a query work
 //! with their vertices and faces.
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 use crate::support::{Cso, CsoVertex, EdgeId, FaceId, Polytope, VertexId};
 use glam::DVec3;
 

@@ -6,9 +6,6 @@
 //! two edges do. (On the sphere of normals: an arc of the one shape followed until it leaves the
 //! vertex's region of the other.)
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 use glam::DVec3;
 
 use super::certificate::verdict::FacetEdge;

@@ -1,8 +1,5 @@
 //! What the geometric sub-algorithms share: segments, the choice among faces, and the tetrahedron.
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 use glam::DVec3;
 
 use super::Nearest;

@@ -1,8 +1,5 @@
 //! Signed volumes: which faces of the simplex the projected origin lies beyond.
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 use glam::{DVec2, DVec3};
 
 use super::faces::{self, Combination, Triangle, nearest_edge, nearest_in_sliver, normal};

@@ -4,9 +4,6 @@
 //! quickly, those of yesterday go quickly; where nothing comes, time passes as if a little came.
 //! Hulls that were dropped too early are noticed when they are prepared again: then all may grow older.
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 use std::time::{Duration, Instant};
 
 use crate::parry::int_hash::IntMap;

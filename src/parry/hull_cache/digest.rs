@@ -12,9 +12,6 @@
 //! for each of the sixteen. (This supposes that the changes have nothing to do with AES. Who looks for
 //! points that deceive it finds some: it keeps no secret.)
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 use glam::Vec3;
 
 /// Of fewer points a comparison is no slower.

@@ -11,9 +11,6 @@
 //! Each thread has a table of its own, which needs no lock; the hulls themselves are shared. Nothing
 //! says that a polyhedron is gone: its hull goes when it was not used for long ([`Aging`]).
 
-// perf: calls instead of inlined code, here and in the other files on the way to a query, add 6 % of
-// instructions to separated/32.
-
 mod aging;
 mod digest;
 pub(crate) mod epoch;

@@ -1,8 +1,5 @@
 //! The contacts of a hull with a half-space.
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 use super::normals::Normals;
 use super::record::KernelManifold;
 use super::sink::UpdateContacts;

@@ -1,8 +1,5 @@
 //! The points of a manifold, and what they inherit from those of the frame before.
 
-// perf: values of four lanes go through memory in calls, which cost a tenth of a manifold's update
-// without link-time optimisation. So what is inlined here is inlined always.
-
 use glam::Vec3;
 use parry3d::math::Real;
 use parry3d::query::TrackedContact;

@@ -1,8 +1,5 @@
 //! The contact normal of a pair as both shapes see it.
 
-// perf: calls instead of inlined code, here and in the other files of a query, add 2 % of instructions to
-// touching/32 and 4 % to resting/16.
-
 use glam::{DVec3, Vec3};
 
 use crate::map_pair::map_pair;

@@ -12,9 +12,6 @@
 //!
 //! What another dispatcher or a different pair left there is as good as any other hint.
 
-// perf: values of four lanes go through memory in calls, which cost a tenth of a manifold's update
-// without link-time optimisation. So what is inlined here is inlined always.
-
 use glam::{DVec3, Vec3};
 use parry3d::math::Rotation;
 use parry3d::query::{ContactManifold, TrackedContact};

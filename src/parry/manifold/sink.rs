@@ -1,8 +1,5 @@
 //! From the answer of a query to a manifold.
 
-// perf: calls instead of inlined code, here and in the other files on the way to a query, add 6 % of
-// instructions to separated/32.
-
 use parry3d::query::ContactManifold;
 
 use super::record::{AxisFrame, KernelManifold};
