@@ -18,7 +18,7 @@ use std::process::{Command, ExitCode};
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Rotation, Vector};
 use parry3d::shape::SharedShape;
-use testkit::pair::{FRAMES, GAPS, Manifolds, hull, trajectory, update};
+use testkit::pair::{FRAMES, GAPS, Manifolds, hull, resting, trajectory, update};
 use testkit::scenes::hulls;
 
 /// What another minor version of the compiler may cost.
@@ -88,15 +88,8 @@ fn pairs(case: &str, size: usize) -> Vec<([SharedShape; 2], Pose)> {
     };
     match case {
         "resting" => {
-            let sides = size as u32 / 2;
-            let shapes = [0.5, 0.4]
-                .map(|height| hulls::prism(sides, hulls::RADIUS, height).expect("a prism"));
-            let trembling = |frame: usize| {
-                let [a, b] = [0.7, 1.1].map(|rate| 1e-6 * (rate * frame as f32).sin());
-                let turn = Rotation::from_scaled_axis(Vector::new(a, 0.3, b));
-                Pose::from_parts(Vector::new(0.1 + b, 0.898 + a, 0.05), turn)
-            };
-            along(shapes, (0..FRAMES).map(trembling).collect())
+            let (shapes, poses) = resting(size as u32 / 2);
+            along(shapes, poses)
         }
         "new" => {
             let known = hull(size, 1);

@@ -2,6 +2,10 @@
 
 #[cfg(feature = "box3d")]
 mod box3d;
+#[cfg(feature = "jolt")]
+mod jolt;
+#[cfg(feature = "physx")]
+mod physx;
 
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Real};
@@ -34,7 +38,13 @@ pub fn all(case: &Case) -> Vec<Box<dyn Engine>> {
         Box::new(Dispatched::new("parry", DefaultQueryDispatcher, case)),
     ];
     #[cfg(feature = "box3d")]
-    engines.push(Box::new(box3d::Box3d::new(case)));
+    if let Some(box3d) = box3d::Box3d::new(case) {
+        engines.push(Box::new(box3d));
+    }
+    #[cfg(feature = "jolt")]
+    engines.push(Box::new(jolt::Jolt::new(case)));
+    #[cfg(feature = "physx")]
+    engines.push(Box::new(physx::PhysX::new(case)));
     engines
 }
 

@@ -1,6 +1,7 @@
 //! One pair's contact manifold in several engines, in one process and one run, judged by an oracle.
 
 mod cases;
+mod chart;
 mod engines;
 mod judge;
 
@@ -27,11 +28,16 @@ struct Options {
     /// Write the table as comma-separated values, too
     #[arg(long)]
     csv: Option<PathBuf>,
+
+    /// Draw time and error against vertices, as SVG
+    #[arg(long)]
+    chart: Option<PathBuf>,
 }
 
 /// One engine on one trajectory.
 struct Row {
-    case: String,
+    hulls: String,
+    gap: &'static str,
     engine: &'static str,
     nanoseconds: f64,
     verdict: Verdict,
@@ -39,33 +45,53 @@ struct Row {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
-    println!("| pair | engine | ns | missing | phantom | gross | error |");
-    println!("|---|---|---|---|---|---|---|");
-    let mut csv = String::from("pair,engine,ns,missing,phantom,gross,error\n");
+    let mut rows = Vec::new();
+    println!("| pair | gap | engine | ns | missing | phantom | gross | error |");
+    println!("|---|---|---|---|---|---|---|---|");
     for case in cases::all() {
         for row in measure(&case, options.turns) {
-            let Row {
-                case,
-                engine,
-                nanoseconds,
-                verdict: v,
-            } = row;
-            println!(
-                "| {case} | {engine} | {nanoseconds:.0} | {} | {} | {} | {:.1e} |",
-                v.missing, v.phantom, v.gross, v.worst
-            );
-            let _ = writeln!(
-                csv,
-                "{case},{engine},{nanoseconds:.0},{},{},{},{:.3e}",
-                v.missing, v.phantom, v.gross, v.worst
-            );
+            println!("| {} |", row.cells().join(" | "));
+            rows.push(row);
         }
     }
     if let Some(path) = options.csv {
-        fs::write(&path, csv)
+        fs::write(&path, as_csv(&rows))
             .map_err(|error| format!("cannot write {}: {error}", path.display()))?;
     }
+    if let Some(path) = options.chart {
+        chart::draw(&path, &rows)
+            .map_err(|error| format!("cannot draw {}: {error}", path.display()))?;
+    }
     Ok(())
+}
+
+impl Row {
+    fn cells(&self) -> [String; 8] {
+        let Verdict {
+            missing,
+            phantom,
+            gross,
+            worst,
+        } = self.verdict;
+        [
+            self.hulls.clone(),
+            self.gap.to_owned(),
+            self.engine.to_owned(),
+            format!("{:.0}", self.nanoseconds),
+            missing.to_string(),
+            phantom.to_string(),
+            gross.to_string(),
+            format!("{worst:.1e}"),
+        ]
+    }
+}
+
+fn as_csv(rows: &[Row]) -> String {
+    let mut csv = String::from("pair,gap,engine,ns,missing,phantom,gross,error\n");
+    for row in rows {
+        let _ = writeln!(csv, "{}", row.cells().join(","));
+    }
+    csv
 }
 
 /// All engines on one trajectory, in turn, so that whatever else the machine does, it does to all.
@@ -84,7 +110,8 @@ fn measure(case: &Case, turns: u32) -> Vec<Row> {
     }
     let rows = engines.iter().zip(times).zip(verdicts);
     rows.map(|((engine, times), verdict)| Row {
-        case: case.name.clone(),
+        hulls: case.hulls.clone(),
+        gap: case.gap,
         engine: engine.name(),
         nanoseconds: median(times),
         verdict,

@@ -18,20 +18,24 @@ use crate::cases::Case;
 const CAPACITY: usize = 64;
 
 pub struct Box3d {
-    hulls: [NonNull<b3HullData>; 2],
+    hulls: [Hull; 2],
     cache: b3SATCache,
     points: [b3LocalManifoldPoint; CAPACITY],
     count: usize,
 }
 
+struct Hull(NonNull<b3HullData>);
+
 impl Box3d {
-    pub fn new(case: &Case) -> Self {
-        Self {
-            hulls: case.shapes.each_ref().map(hull),
+    /// `None` for hulls that Box3D does not take: it allows 256 half-edges.
+    pub fn new(case: &Case) -> Option<Self> {
+        let [a, b] = case.shapes.each_ref().map(Hull::new);
+        Some(Self {
+            hulls: [a?, b?],
             cache: empty(),
             points: [const { empty() }; CAPACITY],
             count: 0,
-        }
+        })
     }
 }
 
@@ -41,25 +45,25 @@ const fn empty<T: Copy>() -> T {
     unsafe { mem::zeroed() }
 }
 
-fn hull(shape: &SharedShape) -> NonNull<b3HullData> {
-    let points = shape.as_convex_polyhedron().expect("a hull").points();
-    let points: Vec<_> = points.iter().map(|p| vector(p.to_array())).collect();
-    let count = i32::try_from(points.len()).expect("a small hull");
-    // SAFETY: the points are there, as many as said, until the call returns.
-    let hull = unsafe { b3CreateHull(points.as_ptr(), count, count) };
-    NonNull::new(hull).expect("Box3D takes this hull")
+impl Hull {
+    fn new(shape: &SharedShape) -> Option<Self> {
+        let points = shape.as_convex_polyhedron().expect("a hull").points();
+        let points: Vec<_> = points.iter().map(|p| vector(p.to_array())).collect();
+        let count = i32::try_from(points.len()).expect("a small hull");
+        // SAFETY: the points are there, as many as said, until the call returns.
+        let hull = unsafe { b3CreateHull(points.as_ptr(), count, count) };
+        NonNull::new(hull).map(Self)
+    }
 }
 
 fn vector([x, y, z]: [Real; 3]) -> b3Vec3 {
     b3Vec3 { x, y, z }
 }
 
-impl Drop for Box3d {
+impl Drop for Hull {
     fn drop(&mut self) {
-        for hull in self.hulls {
-            // SAFETY: it comes from `b3CreateHull`, and nobody uses it any more.
-            unsafe { b3DestroyHull(hull.as_ptr()) };
-        }
+        // SAFETY: it comes from `b3CreateHull`, and nobody uses it any more.
+        unsafe { b3DestroyHull(self.0.as_ptr()) };
     }
 }
 
@@ -79,7 +83,10 @@ impl Engine for Box3d {
         };
         let mut manifold: b3LocalManifold = empty();
         manifold.points = self.points.as_mut_ptr();
-        let [a, b] = self.hulls.map(|hull| hull.as_ptr().cast_const());
+        let [a, b] = self
+            .hulls
+            .each_ref()
+            .map(|hull| hull.0.as_ptr().cast_const());
         // SAFETY: the hulls live as long as `self`, and the manifold has room for so many points.
         unsafe {
             b3CollideHulls(
