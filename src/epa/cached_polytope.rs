@@ -1,11 +1,10 @@
-//! The polytope of an expansion, kept for the proofs of the frames to come.
+//! The polytope of an expansion, kept to prove depths in later frames.
 //!
-//! Its vertices, re-evaluated at other poses, are again points of the Minkowski difference, and its
-//! triangles a closed surface, oriented outwards. Where the origin is on the inner side of all of
-//! their planes, at least `d` away from each, the surface winds around the ball of radius `d` about
-//! it. So the ball is in the convex hull of the vertices and in the difference: no direction has a
-//! smaller depth than `d`. Whether the surface is still convex does not matter, nor which pair it
-//! is of.
+//! Its vertices, re-evaluated at other poses, are again points of the Minkowski difference, and its triangles
+//! form a closed surface, oriented outwards. If the origin is on the inner side of all their planes, at least
+//! `d` away from each, the surface winds around the ball of radius `d` about the origin. So the ball is in
+//! the convex hull of the vertices, and in the difference: no direction has a smaller depth than `d`. It does
+//! not matter whether the surface is still convex, or from which pair it came.
 
 use glam::DVec3;
 
@@ -15,26 +14,26 @@ use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
 use crate::tolerance::{DEPTH_GAP, PROOF_MARGIN};
 use crate::tuning::MIN_GROWABLE;
 
-/// Where hulls of a thousand vertices overlap by a fifth of their size, nineteen are usual.
+/// Hulls of a thousand vertices that overlap by a fifth of their size usually need nineteen.
 const MOST_VERTICES: usize = 32;
-/// A closed surface of triangles has no more.
+/// A closed surface of triangles has no more faces than this.
 const MOST_FACES: usize = 2 * MOST_VERTICES - 4;
 
-/// A surface that has to grow more than this is no better to start from than they are.
+/// A surface that must grow by more than this is no better a start than the features are.
 const MAX_EXPANSIONS: usize = 12;
 
-/// Stands for the difference's centre.
+/// The key of the difference's centre.
 const CENTER: [u16; 2] = [u16::MAX; 2];
 
-/// A polytope inside of a Minkowski difference, without coordinates.
+/// A polytope inside a Minkowski difference, without coordinates.
 #[derive(Clone, Debug)]
 pub(super) struct CachedPolytope {
-    /// The vertices of the two shapes that each is the difference of.
+    /// For each vertex, the vertices of the two shapes whose difference it is.
     vertices: [[u16; 2]; MOST_VERTICES],
     /// Counter-clockwise seen from outside.
     faces: [[u8; 3]; MOST_FACES],
     vertex_count: u8,
-    /// Without faces it proves nothing.
+    /// Zero if the cache is empty: then it proves nothing.
     face_count: u8,
 }
 
@@ -50,8 +49,8 @@ impl Default for CachedPolytope {
 }
 
 impl CachedPolytope {
-    /// Whether [`penetration_below`](super::penetration_below) would say that the depth is known, as
-    /// far as this surface can tell, or what it grows to in a few expansions.
+    /// Whether this surface, or what it grows to in a few expansions, proves that
+    /// [`penetration_below`](super::penetration_below) would find no smaller depth.
     pub fn proves_depth<A: Polytope, B: Polytope>(
         &mut self,
         cso: &Cso<'_, A, B>,
@@ -77,8 +76,8 @@ impl CachedPolytope {
         &self.faces[..self.face_count.into()]
     }
 
-    /// That of the origin from the nearest of all planes, if it is on their inner side; else, or if
-    /// there is none, infinitely negative.
+    /// The distance of the origin from the nearest plane, if the origin is on the inner side of all planes;
+    /// otherwise, or without planes, negative infinity.
     fn distance(&self, polytope: &ExpandingPolytope) -> f64 {
         let mut least = f64::INFINITY;
         for face in self.faces() {
@@ -99,7 +98,7 @@ impl CachedPolytope {
         }
     }
 
-    /// Grows where the ball stands out; `false`, and nothing changed, if that does not help.
+    /// Grows where the ball sticks out. If this does not help, returns `false` and changes nothing.
     fn grow<A: Polytope, B: Polytope>(
         &mut self,
         cso: &Cso<'_, A, B>,
@@ -137,7 +136,7 @@ impl CachedPolytope {
     fn copy(&mut self, polytope: &ExpandingPolytope, center: DVec3) -> Option<()> {
         const NONE: u8 = u8::MAX;
         (self.vertex_count, self.face_count) = (0, 0);
-        // Which of our vertices those of the polytope are. Many of them are inside by now.
+        // From the polytope's vertices to ours. Many of the former are inside by now.
         let mut numbers = [NONE; 4 * MOST_VERTICES];
         for corners in polytope.surface() {
             let face = self.faces.get_mut(usize::from(self.face_count))?;
@@ -165,7 +164,7 @@ fn vertex_key(vertex: &CsoVertex, center: DVec3) -> [u16; 2] {
     }
 }
 
-/// The point with this key, if the shapes have its vertices.
+/// The point with this key, if the shapes have these vertices.
 fn vertex_at<A: Polytope, B: Polytope>(key: [u16; 2], cso: &Cso<'_, A, B>) -> Option<CsoVertex> {
     if key == CENTER {
         return Some(cso.center_as_vertex([VertexId::default(); 2]));

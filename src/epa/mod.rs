@@ -1,13 +1,13 @@
 //! Penetration depth by the expanding polytope algorithm (van den Bergen, *Proximity queries and
 //! penetration depth computation on 3D game objects*, GDC 2001).
 //!
-//! A polytope inside of the Minkowski difference grows by support points along the normal of the
+//! A polytope inside the Minkowski difference grows by support points along the normal of the
 //! face whose plane is nearest to the origin, until that face cannot be pushed out: its plane
 //! then bounds the depth from above (a support plane) and from below (the nearest face).
 //!
-//! Distances of faces carry a sign, negative where the origin lies beyond the face. So the
-//! origin may lie anywhere at the start, on a vertex, an edge or a face or even outside: no
-//! touching configuration is a special case. All that is asked of the first polytope is volume.
+//! The distances of faces are signed, and negative where the origin lies beyond the face. So the origin may
+//! lie anywhere at the start, on a vertex, an edge or a face, or even outside: touching configurations are no
+//! special case. The first polytope need only have volume.
 
 mod cached_polytope;
 mod polytope;
@@ -26,7 +26,7 @@ use crate::support::{Cso, CsoVertex, Support};
 use crate::tolerance::DEPTH_GAP;
 use polytope::ExpandingPolytope;
 
-/// Identical fine spheres need a face for every pair of facets; nothing sane needs more.
+/// Identical fine spheres need a face for every pair of facets. No reasonable input needs more.
 const MAX_EXPANSIONS: u32 = 50_000;
 
 /// How deep two shapes overlap, in frame 1.
@@ -47,19 +47,19 @@ pub struct Penetration {
     pub face: [CsoVertex; 3],
 }
 
-/// The penetration depth, growing from the hull of `seeds`: points of the Minkowski difference,
-/// usually GJK's last simplex.
+/// The penetration depth. The polytope grows from the hull of `seeds`, which are points of the Minkowski
+/// difference, usually GJK's last simplex.
 ///
 /// Stops early, with a negative depth, when a face's normal separates the shapes. `None` if the
 /// Minkowski difference has no volume or is not finite.
 ///
-/// Polytopes, and curved shapes in general position, take tens of expansions. Where a curved pair
-/// has a whole circle of least directions (cylinders, cones and balls on one axis) the polytope
-/// must become as round as the tolerance asks: 2,000 to 7,200 expansions, up to a second or two.
+/// Polytopes, and curved shapes in general position, take tens of expansions. If a curved pair has a whole
+/// circle of directions with the least depth (cylinders, cones and balls on a common axis), the polytope must
+/// become as round as the tolerance requires: this takes 2,000 to 7,200 expansions, up to a second or two.
 ///
-/// The witness points are apart by the depth along the normal, up to the tolerance. Across the
-/// normal they may be apart by more, where the face found is a part of a larger facet: by 3e-5 of
-/// the size for parallel cylinders sixteen times as long as wide.
+/// Along the normal, the distance of the witness points is the depth, up to the tolerance. Across the normal
+/// it may be larger, if the face found is a part of a larger facet: 3e-5 of the size for parallel cylinders
+/// sixteen times as long as wide.
 pub fn penetration<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     seeds: &[CsoVertex],
@@ -72,8 +72,8 @@ pub fn penetration<A: Support, B: Support>(
     }
 }
 
-/// The penetration depth if it is less than `known_depth` by more than the tolerance, as
-/// [`penetration`] finds it; else [`DepthSearch::NotBelow`]: then none is less by more than twice that.
+/// The penetration depth, as [`penetration`] finds it, if it is less than `known_depth` by more than the
+/// tolerance. Otherwise [`DepthSearch::NotBelow`]: then no depth is less by more than twice the tolerance.
 pub fn penetration_below<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     seeds: &[CsoVertex],
@@ -102,7 +102,7 @@ pub fn penetration_below<A: Support, B: Support>(
         };
         let (normal, distance) = polytope.plane(face);
         cost.iterations += 1;
-        // The corners of the face are mostly farther from where the climbs end.
+        // The climbs mostly end farther from the corners of the face.
         let w = cso.support(normal, cso.start_vertices(normal), cost);
         let depth = normal.dot(w.w);
         let is_bound = depth - distance <= tolerance;
@@ -115,10 +115,10 @@ pub fn penetration_below<A: Support, B: Support>(
         }
         if depth < best.0 {
             best = (depth, Some(face));
-            // No face beyond an upper bound of the depth can be the one to be found.
+            // A face beyond an upper bound of the depth cannot be the nearest.
             polytope.limit_search(depth + tolerance);
         }
-        // A face that cannot be expanded (a sliver with an unreliable normal) is passed over.
+        // A face that cannot be expanded (a sliver with an unreliable normal) is skipped.
         let is_stuck = !is_bound && (polytope.contains(&w) || !polytope.expand(face, w));
         if is_stuck {
             cost.fallbacks += 1;
@@ -140,19 +140,19 @@ pub fn penetration_below<A: Support, B: Support>(
 )]
 #[derive(Clone, Copy, Debug)]
 pub enum DepthSearch {
-    /// No direction has a depth below that known before.
+    /// No direction has a smaller depth than the known one.
     NotBelow,
     /// This is the depth.
     Found(Penetration),
 }
 
-/// The witness points over a face: where the origin projects to, or the point of the triangle
-/// nearest to that. (A facet larger than the triangle may hold the foot outside of it.)
+/// The witness points on a face: where the origin projects to, or the nearest point of the triangle. (If the
+/// triangle is part of a larger facet, the projection may lie outside the triangle.)
 fn witness(polytope: &ExpandingPolytope, face: u32, [lower_bound, depth]: [f64; 2]) -> Penetration {
     let (normal, _) = polytope.plane(face);
     let face = polytope.corners(face);
     debug_assert!(is_unit(normal), "no unit vector: {normal}");
-    // Measured from the foot of the normal, so that the depth does not swamp the position.
+    // Measured from the foot of the normal, so that the depth does not drown the position in rounding.
     let foot = normal * depth;
     let nearest = Preferred::nearest(&face.map(|v| v.w - foot));
     let combine = |on: fn(&CsoVertex) -> DVec3| -> DVec3 {

@@ -1,5 +1,5 @@
-//! The polytope that expands: a closed triangulated surface with adjacency, and a heap of faces
-//! by their signed distance from the origin.
+//! The expanding polytope: a closed triangulated surface with adjacency, and a heap of faces, ordered by
+//! signed distance from the origin.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -9,8 +9,8 @@ use glam::DVec3;
 use crate::support::CsoVertex;
 use crate::tolerance::COPLANAR;
 
-/// An edge of a face as that face sees it: four times the face, plus the number of the corner
-/// where the edge starts.
+/// An edge as one of its faces sees it: four times the face, plus the number of the corner where the edge
+/// starts.
 type FaceEdge = u32;
 
 fn face_edge(face: u32, number: u32) -> FaceEdge {
@@ -29,7 +29,7 @@ fn number(edge: FaceEdge) -> usize {
 /// Its triangles, counter-clockwise seen from outside if corner 3 is below (0, 1, 2).
 const TETRAHEDRON: [[u8; 3]; 4] = [[0, 1, 2], [1, 0, 3], [2, 1, 3], [0, 2, 3]];
 
-/// The number after a corner's.
+/// The number of the next corner.
 const NEXT: [usize; 3] = [1, 2, 0];
 
 #[derive(Clone, Debug)]
@@ -49,7 +49,7 @@ impl Face {
     }
 }
 
-/// A heap entry; the heap's greatest is the nearest face, and of equally near ones the oldest.
+/// A heap entry. The greatest is the nearest face, and the oldest among faces that are equally near.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     distance: f64,
@@ -76,7 +76,7 @@ impl Ord for Candidate {
     }
 }
 
-/// See the module documentation. All vectors are cleared, never freed, between queries.
+/// See the module documentation. Vectors are cleared between queries, but never freed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ExpandingPolytope {
     vertices: Vec<CsoVertex>,
@@ -85,16 +85,16 @@ pub(super) struct ExpandingPolytope {
     horizon: Vec<FaceEdge>,
     visible: Vec<u32>,
     stack: Vec<FaceEdge>,
-    /// The sides of an added surface by their ends: in rows by start.
+    /// The sides of an added surface, in rows by their start vertex.
     sides: Vec<FaceEdge>,
     coplanar: f64,
-    /// A face whose plane is no nearer than this is not searched.
+    /// Faces whose planes are no nearer than this are not searched.
     search_radius: f64,
 }
 
 impl ExpandingPolytope {
-    /// Starts over without anything. `size` is what tolerances are relative to; faces no nearer to
-    /// the origin than `search_radius` are not searched.
+    /// Removes everything. Tolerances are relative to `size`. Faces no nearer to the origin than
+    /// `search_radius` are not searched.
     pub fn clear(&mut self, size: f64, search_radius: f64) {
         self.vertices.clear();
         self.faces.clear();
@@ -107,8 +107,8 @@ impl ExpandingPolytope {
         self.vertices.push(vertex);
     }
 
-    /// Adds the triangles of a closed surface over the vertices that were pushed; `false` if an edge
-    /// does not tell which triangles meet there: it is there twice, or has no other side.
+    /// Adds the triangles of a closed surface over the vertices pushed so far. `false` if the triangles at an
+    /// edge are ambiguous: the edge occurs twice, or has no other side.
     pub fn add_surface(&mut self, triangles: &[[u8; 3]]) -> bool {
         const NONE: FaceEdge = FaceEdge::MAX;
         let count = self.vertices.len();
@@ -131,7 +131,7 @@ impl ExpandingPolytope {
         })
     }
 
-    /// Starts over from a tetrahedron with volume, as [`clear`](Self::clear) does.
+    /// Like [`clear`](Self::clear), but starts with a tetrahedron that has volume.
     pub fn start(&mut self, corners: [CsoVertex; 4], size: f64, search_radius: f64) {
         self.clear(size, search_radius);
         let [a, b, c, d] = corners.map(|v| v.w);
@@ -156,7 +156,7 @@ impl ExpandingPolytope {
         None
     }
 
-    /// Outward unit normal of a face, and signed distance of the origin below its plane.
+    /// The outward unit normal of a face, and the signed distance of the origin below its plane.
     pub fn plane(&self, face: u32) -> (DVec3, f64) {
         let face = &self.faces[face as usize];
         (face.normal, face.distance)
@@ -185,7 +185,7 @@ impl ExpandingPolytope {
         self.vertices.iter().any(|v| v.w == vertex.w)
     }
 
-    /// Takes a face out of the search, not out of the surface.
+    /// Removes a face from the search, but not from the surface.
     pub fn remove_from_queue(&mut self, face: u32) {
         if self.heap.peek().is_some_and(|top| top.face == face) {
             self.heap.pop();
@@ -197,7 +197,7 @@ impl ExpandingPolytope {
         self.search_radius = self.search_radius.min(search_radius);
     }
 
-    /// Grows to a point of the difference, if that is outside: one that need not be searched for.
+    /// Expands to a given point of the difference, if that is outside.
     pub fn insert_if_outside(&mut self, vertex: &CsoVertex) {
         let is_outside = |face: &Face| face.alive && face.height(vertex.w) > self.coplanar;
         if let Some(face) = self.faces.iter().position(is_outside) {
@@ -205,8 +205,8 @@ impl ExpandingPolytope {
         }
     }
 
-    /// Replaces all faces that see `vertex` by a cone from their horizon to it. `false`, and
-    /// nothing changed, if rounding leaves no proper horizon.
+    /// Replaces all faces that see `vertex` by a cone from their horizon to it. If rounding leaves no proper
+    /// horizon, returns `false` and changes nothing.
     pub fn expand(&mut self, face: u32, vertex: CsoVertex) -> bool {
         self.find_horizon(face, vertex.w);
         if !self.horizon_is_closed() {
@@ -239,8 +239,8 @@ impl ExpandingPolytope {
         [corners[k], corners[NEXT[k]]]
     }
 
-    /// Collects the edges around the faces visible from `w`, in order, each as seen from the
-    /// face that stays; the visible faces are marked dead.
+    /// Collects the edges around the faces visible from `w` in order, each as the remaining face sees it, and
+    /// marks the visible faces as dead.
     fn find_horizon(&mut self, face: u32, w: DVec3) {
         self.horizon.clear();
         self.visible.clear();
@@ -276,7 +276,7 @@ impl ExpandingPolytope {
         let Some(&last) = self.horizon.last() else {
             return false;
         };
-        // Seen from outside of the visible region the loop runs backwards.
+        // Seen from outside the visible region, the loop runs backwards.
         let [mut before, _] = self.edge_corners(last);
         self.horizon.len() >= 3
             && self.horizon.iter().all(|&edge| {
@@ -291,7 +291,7 @@ impl ExpandingPolytope {
         let [a, b, c] = corners.map(|v| self.vertices[v as usize].w);
         let area = (b - a).cross(c - a);
         let squared = area.length_squared();
-        // A face without area has no plane: it stays in the surface, never in the search.
+        // A face without area has no plane. It stays in the surface, but is never searched.
         let (normal, distance) = if squared > 0.0 {
             let normal = area * squared.sqrt().recip();
             let heights = [a, b, c].map(|corner| normal.dot(corner));
@@ -316,14 +316,14 @@ impl ExpandingPolytope {
     }
 }
 
-/// Memory for expansions, kept from query to query so that none of them allocates.
+/// Memory for expansions. It is kept from query to query, so that queries do not allocate.
 #[derive(Clone, Debug, Default)]
 pub struct EpaScratch {
     pub(super) polytope: ExpandingPolytope,
 }
 
 impl EpaScratch {
-    /// The triangles of the last expansion: a closed surface inside of the Minkowski difference,
+    /// The triangles of the last expansion: a closed surface inside the Minkowski difference,
     /// counter-clockwise seen from outside.
     pub(crate) fn surface(&self) -> impl Iterator<Item = [CsoVertex; 3]> + Clone {
         let polytope = &self.polytope;

@@ -5,26 +5,26 @@ use super::polytope::EpaScratch;
 use crate::stats::Cost;
 use crate::support::{Cso, Polytope, Support};
 
-/// The number of pairs that there is room for, if each has a slot of its own.
+/// How many pairs the cache holds, if no two share a slot.
 const SLOTS: usize = 1 << SLOT_BITS;
 const SLOT_BITS: u32 = 11;
 
-/// A new entry, or one that has just proved a depth, survives this many attempts to replace it. Where
-/// there are more pairs than places, some prove and the others lose little.
+/// A new entry, or one that has just proved a depth, survives this many attempts to replace it. If there are
+/// more pairs than slots, some pairs have proofs and the others lose little.
 const PROTECTED_MISSES: u8 = 16;
 
-/// What was expanded for pairs in earlier frames, for proofs that their depths are the least. A pair
-/// is found by a key, any number that stays the same from frame to frame.
+/// Polytopes that were expanded for pairs in earlier frames, to prove that their depths are the least. A pair
+/// is found by a key, which may be any number that stays the same from frame to frame.
 ///
-/// Nothing depends on what is kept and what was lost but how long an answer takes; a key that means
-/// another pair by now is no danger.
+/// Whether an entry is kept or lost changes only how long an answer takes. A key that now stands for another
+/// pair does no harm.
 #[derive(Clone, Debug)]
 pub struct PolytopeCache(Box<[CacheSlot]>);
 
 #[derive(Clone, Debug, Default)]
 struct CacheSlot {
     key: u64,
-    /// How many more attempts of other pairs to take the slot are refused.
+    /// How many more attempts to replace this entry are refused.
     protected_misses: u8,
     polytope: Option<Box<CachedPolytope>>,
 }
@@ -36,8 +36,8 @@ impl Default for PolytopeCache {
 }
 
 impl PolytopeCache {
-    /// Whether [`penetration_below`](super::penetration_below) would say that the depth is known, judging
-    /// by the cached polytope of this pair, or by what it grows to in a few expansions.
+    /// Whether the cached polytope of this pair, or what it grows to in a few expansions, proves that
+    /// [`penetration_below`](super::penetration_below) would find no smaller depth.
     pub fn proves_depth<A: Polytope, B: Polytope>(
         &mut self,
         key: u64,

@@ -1,4 +1,4 @@
-//! A first tetrahedron with volume inside of the Minkowski difference.
+//! A first tetrahedron with volume inside the Minkowski difference.
 
 use glam::DVec3;
 
@@ -7,7 +7,7 @@ use crate::support::{Cso, CsoVertex, Support};
 use crate::tolerance::DEGENERATE;
 use crate::tuning::GOOD_SEED;
 
-/// Four points with volume: from `seeds` where they have any, else from support points.
+/// Four points with volume, from `seeds` if these have volume, and otherwise from support points.
 pub(super) fn tetrahedron<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     seeds: &[CsoVertex],

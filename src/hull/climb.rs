@@ -1,27 +1,27 @@
 //! Support by hill climbing on the edge graph (Cameron, *Enhancing GJK: computing minimum and
 //! penetration distances between convex polyhedra*, ICRA 1997), with the base case corrected.
 //!
-//! From a vertex, move to the best neighbour while one is better. On a convex hull a vertex
-//! with no better neighbour is extreme, unless it ties with neighbours: a vertex in the interior
-//! of a flat face may be the *worst* vertex in the direction of the face's inward normal. In
-//! exact arithmetic only the start can be such a vertex, since a vertex reached by an improving
-//! move has a strictly worse neighbour. With rounded coordinates a tie may also hide a small rise
-//! or a small fall: over a very short edge, or along the rim of a face with many corners.
+//! From a vertex, move to the best neighbour while that is better. On a convex hull a vertex without a better
+//! neighbour is extreme, unless it ties with its neighbours: a vertex inside a flat face may be the *worst*
+//! vertex in the direction of the face's inward normal. In exact arithmetic only the start can be such a
+//! vertex, since a vertex reached by an improving move has a strictly worse neighbour. With rounded
+//! coordinates a tie may also hide a small rise or fall, over a very short edge or along the rim of a face
+//! with many corners.
 //!
-//! All vertices at which that may happen are known when the hull is built: they have an edge that is
-//! flat up to rounding, or a very short one. A climb that ends at one of them with a neighbour that is
-//! hardly lower searches the plateau around for a vertex above it, and climbs on from there. A plateau
-//! of more than a few vertices is not searched: a scan of all points takes less time.
+//! The vertices at which this may happen are found when the hull is built: they have an edge that is flat up
+//! to rounding, or very short. If a climb ends at one of them, next to a neighbour that is hardly lower, it
+//! searches the plateau around it for a higher vertex and climbs on from there. A plateau of more than a few
+//! vertices is not searched: scanning all points takes less time.
 //!
-//! A dent may be a false summit for directions that point into the hull, however deep it is. But the
-//! top is above the centre. So a climb that ends below the centre is finished by a scan.
+//! For directions that point into the hull, any dent may be a false summit. But the top is above the centre,
+//! so a climb that ends below the centre is finished by a scan.
 //!
-//! Promise: with `s` the returned vertex, `h(d) - d·s` is at most [`SUPPORT_TIE`]` * radius * |d|` on
-//! convex hulls, and four times that on those that f32 rounding has dented, up to needles of
-//! 1:1000. The cross-section of longer ones is a few roundings; there it is at most two
-//! [`MAX_DENT`](crate::tolerance::MAX_DENT)` * radius * |d|`. Building refuses the surfaces on
-//! which a climb would lose more: with deeper dents, folds, or two layers. The limits are those
-//! measured in `tests/kernels/hill_climbing.rs`.
+//! Promise: for the returned vertex `s`, `h(d) - d·s` is at most [`SUPPORT_TIE`]` * radius * |d|` on convex
+//! hulls, and four times that on hulls that f32 rounding has dented, up to needles of 1:1000. The
+//! cross-section of longer needles is only a few roundings; there it is at most two
+//! [`MAX_DENT`](crate::tolerance::MAX_DENT)` * radius * |d|`. Building refuses surfaces on which a climb
+//! would lose more: those with deeper dents, folds, or two layers. `tests/kernels/hill_climbing.rs` measures
+//! these limits.
 
 use std::array;
 
@@ -34,7 +34,7 @@ use crate::stats::Cost;
 use crate::support::VertexId;
 use crate::tolerance::{DIP, SHORT_EDGE, SUPPORT_TIE};
 
-/// What a climb goes over.
+/// The hull that is climbed.
 #[derive(Clone, Copy)]
 pub(super) struct HillClimb<'a> {
     pub points: &'a [Vec3],
@@ -43,16 +43,16 @@ pub(super) struct HillClimb<'a> {
     pub radius: f64,
 }
 
-/// A larger plateau is not searched.
+/// Larger plateaus are not searched.
 const SMALL_PLATEAU: usize = 16;
 
-/// What a search of a plateau found.
+/// The result of searching a plateau.
 enum Plateau {
-    /// A vertex above it.
+    /// This vertex is above it.
     Exit(VertexId),
-    /// It is the maximum.
+    /// Nothing is above it.
     Summit,
-    /// It is too large for a search.
+    /// It is too large to be searched.
     Large,
 }
 
@@ -93,7 +93,7 @@ pub(super) fn extreme_vertex(
     }
 }
 
-/// A vertex without a better neighbour, and its height.
+/// A vertex that has no better neighbour, and its height.
 pub(super) fn nearest_summit(climb: HillClimb<'_>, dir: DVec3, start: VertexId) -> (VertexId, f64) {
     let (mut at, mut value) = (start, climb.support_value(dir, start));
     loop {
@@ -105,9 +105,8 @@ pub(super) fn nearest_summit(climb: HillClimb<'_>, dir: DVec3, start: VertexId) 
     }
 }
 
-/// As [`extreme_vertex`], in many directions. Their climbs take the first step together: it is the one
-/// from memory that is in no cache, and so the processor waits for all of it at once. Half of them need
-/// no other.
+/// Like [`extreme_vertex`], in many directions. All climbs take their first step together: its memory is not
+/// in the cache yet, so the processor waits once for all of them. Half of them need no other step.
 #[inline]
 pub(super) fn extreme_vertices<const N: usize>(
     climb: HillClimb<'_>,
@@ -139,8 +138,8 @@ impl HillClimb<'_> {
         dir.dot(self.points[vertex.index()].as_dvec3())
     }
 
-    /// The best neighbour of a vertex, and its height. Four at a time, and selections instead of
-    /// branches: neither how many neighbours there are nor which of them is better is predictable.
+    /// The best neighbour of a vertex, and its height. It compares four at a time, with selections instead of
+    /// branches: neither the number of neighbours nor the better one is predictable.
     #[inline(always)]
     fn best_neighbor(&self, dir: DVec3, at: VertexId) -> (VertexId, f64) {
         let block = self.graph.block(at);
@@ -154,7 +153,7 @@ impl HillClimb<'_> {
         (best.unwrap_or(at), top.value)
     }
 
-    /// Looks at the neighbours in a block, of which the first has this slot.
+    /// Compares the neighbours in a block whose first one has this slot.
     #[inline(always)]
     fn scan_block(&self, block: &NeighborBlock, slot: usize, highest: &mut ArgMaxDot) {
         let to = block.to();
@@ -165,7 +164,7 @@ impl HillClimb<'_> {
         }
     }
 
-    /// Those in the blocks from `block` on.
+    /// Compares the neighbours in `block` and all later blocks.
     #[cold]
     #[inline(never)]
     fn scan_overflow(&self, block: &NeighborBlock, mut highest: ArgMaxDot) -> ArgMaxDot {
@@ -175,14 +174,14 @@ impl HillClimb<'_> {
         highest
     }
 
-    /// Whether a neighbour that is lower by `fall` may hide a way up.
+    /// Whether a neighbour that is lower by `fall` may still lead upwards.
     #[inline(always)]
     fn is_hardly_lower(&self, dir: DVec3, fall: f64) -> bool {
         let dip = DIP * self.radius;
         fall * fall <= dip * dip * dir.length_squared()
     }
 
-    /// Looks for a vertex above the plateau around `start`.
+    /// Searches for a vertex above the plateau around `start`.
     #[cold]
     #[inline(never)]
     fn search_plateau(&self, dir: DVec3, start: VertexId) -> Plateau {
@@ -221,7 +220,7 @@ impl HillClimb<'_> {
         let top = highest.finish();
         let tie = SUPPORT_TIE * self.radius * dir.length();
         let is_above = top.value > self.support_value(dir, preferred) + tie;
-        // What fills up the last four repeats its first one, which is preferred among ties.
+        // The last four are filled up by repeating their first one, which is preferred in a tie.
         if is_above {
             VertexId::new(top.id)
         } else {
@@ -230,7 +229,7 @@ impl HillClimb<'_> {
     }
 }
 
-/// Whether a vertex has an edge so short that its ends' rounding hides a way up.
+/// Whether a vertex has an edge so short that the rounding of its ends may hide a way up.
 pub(super) fn has_short_edge(
     points: &[DVec3],
     graph: &EdgeGraph,

@@ -1,10 +1,10 @@
-//! Face clusters: faces that lie nearly in one plane with their neighbours, as those of a scanned or
-//! triangulated flat end do. Bodies rest on clusters, not on single facets of them.
+//! Face clusters: neighbouring faces that lie nearly in one plane, such as those of a scanned or triangulated
+//! flat end. Bodies rest on whole clusters, not on single faces.
 
 use crate::support::FaceId;
 
-/// For each face that belongs to a cluster, which faces know of themselves, the cluster; for each cluster, the
-/// faces under its outline in a row.
+/// The cluster of each face, and the faces under the outline of each cluster. Whether a face belongs to a
+/// cluster is stored with the face.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FaceClusters {
     /// Empty if there are no clusters.
@@ -16,7 +16,7 @@ pub(super) struct FaceClusters {
 /// One cluster.
 pub(super) struct FaceCluster {
     pub members: Vec<u16>,
-    /// Faces that are no members, but lie partly under the outline, where that cuts across a bay.
+    /// Faces that are not members, but lie partly under the outline where that cuts across a bay.
     pub covered_nonmembers: Vec<u16>,
     /// The corners of the convex outline.
     pub outline: Vec<u16>,
@@ -45,7 +45,8 @@ impl FaceClusters {
         }
     }
 
-    /// The number of the cluster that `face`, which is in one, belongs to, and all faces under its outline.
+    /// The number of the cluster that contains `face`, and all faces under its outline. The face must be in a
+    /// cluster.
     #[inline]
     pub fn containing(&self, face: FaceId) -> (usize, &[u16]) {
         let cluster = usize::from(self.of_face[face.index()]);

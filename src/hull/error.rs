@@ -2,14 +2,14 @@
 
 use std::fmt;
 
-/// What is wrong with the points or triangles that a hull was to be built from.
+/// Why points or triangles are not a hull.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum HullError {
     /// Fewer than four points.
     TooFewPoints,
-    /// More than 32,768 vertices: the faces between them must have 16-bit ids. Points inside of the hull
-    /// do not count.
+    /// More than 32,768 vertices. Their faces would not fit into 16-bit ids. Points inside the hull do not
+    /// count.
     TooManyPoints,
     /// The point with this index has a NaN or infinite coordinate.
     NotFinite(usize),
@@ -28,7 +28,7 @@ pub enum HullError {
     /// The surface is not convex: this vertex lies above the plane of a neighbouring triangle, or
     /// is a corner of a triangle that faces inwards or lies over another one.
     NotConvex(usize),
-    /// Parry's polyhedron, which rapier saves and draws, could not be made of the surface.
+    /// parry could not build its polyhedron, which rapier saves and draws, from the surface.
     BuilderFailed,
 }
 

@@ -1,4 +1,4 @@
-//! The faces of a hull, polygons with their planes, and the outlines of clusters.
+//! The faces of a hull (polygons with their planes), and the outlines of clusters.
 
 use glam::{DVec3, Vec3};
 
@@ -6,29 +6,29 @@ use super::clusters::FaceClusters;
 use super::graph::pack_edge;
 use crate::support::{EdgeId, FaceId};
 
-/// The faces and, after them, the outlines of the clusters.
+/// The faces, followed by the outlines of the clusters.
 #[derive(Clone, Debug)]
 pub(super) struct Faces {
-    /// With one more to end the last one's corners.
+    /// There is one more entry, which ends the corners of the last one.
     pub(super) polygons: Box<[FaceRecord]>,
     pub(super) count: usize,
     pub(super) corners: Box<[FaceCorner]>,
     pub(super) clusters: FaceClusters,
 }
 
-/// A face with its supporting plane, or an outline. What is read together lies together: large
-/// hulls are not in the nearest cache.
+/// A face with its supporting plane, or an outline. Values that are read together lie together, since large
+/// hulls do not fit into the nearest cache.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FaceRecord {
     /// Rounded to f32; the offset is exact for that normal.
     pub(super) normal: Vec3,
-    /// Its first corner; the others follow up to the next polygon's first. With a mark.
+    /// Its first corner, with a mark. The others follow, up to the first corner of the next polygon.
     pub(super) first: u32,
     pub(super) offset: f64,
 }
 
-/// The mark of a face that belongs to a cluster, so that of the others, which are most, nothing more need be
-/// read. No hull has that many corners.
+/// The mark of a face that belongs to a cluster. Most faces do not, and then nothing else need be read. No
+/// hull has so many corners that the bit is in use.
 pub(super) const IN_CLUSTER: u32 = 1 << 31;
 
 impl FaceRecord {
@@ -42,11 +42,11 @@ impl FaceRecord {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FaceCorner {
     pub vertex: u16,
-    /// Of the side that starts here, what the id of that edge has beside its lower vertex.
+    /// The slot of the edge that starts here: its id is made of this and of its lower vertex.
     pub(super) slot: u16,
 }
 
-/// The side of an outline that cuts across faces.
+/// The slot of a side that is no edge, but cuts across faces.
 pub(super) const NO_EDGE: u16 = u16::MAX;
 
 impl Faces {
@@ -71,7 +71,7 @@ impl Faces {
         &self.corners[self.polygons[f].first()..self.polygons[f + 1].first()]
     }
 
-    /// The id of the `i`-th edge of a face, or of an outline where that is an edge.
+    /// The id of the `i`-th side of a face or an outline, if that side is an edge.
     #[inline]
     pub fn edge(&self, face: FaceId, i: usize) -> Option<EdgeId> {
         let corners = self.polygon(face);
@@ -80,7 +80,7 @@ impl Faces {
         (slot != NO_EDGE).then(|| pack_edge(vertex.min(next).into(), slot))
     }
 
-    /// The cluster around a face: the id of its outline, and the faces under that.
+    /// The cluster that a face belongs to: the id of its outline, and the faces under the outline.
     #[inline]
     pub fn cluster(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
         if self.polygons[face.index()].first & IN_CLUSTER == 0 {
@@ -90,7 +90,7 @@ impl Faces {
         Some((FaceId::new(self.len() + cluster), faces))
     }
 
-    /// Of these faces the one that looks most in direction `dir`.
+    /// The face whose normal is nearest to direction `dir`.
     #[inline]
     pub fn most_aligned<const N: usize>(
         &self,
@@ -101,7 +101,7 @@ impl Faces {
         for faces in candidates {
             for face in faces {
                 let aligned = self.normal(face.into()).dot(dir);
-                // Selections: which face it will be is not predictable.
+                // Selections, not branches: which face is better is not predictable.
                 let better = aligned > most;
                 most = if better { aligned } else { most };
                 best = if better { face } else { best };

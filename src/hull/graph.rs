@@ -4,45 +4,45 @@ use std::iter;
 
 use crate::support::{EdgeId, VertexId};
 
-/// The id of an edge is its lower vertex, above this many bits, and its slot among that vertex's
-/// neighbours. With at most 2^15 vertices the id has 30 bits, as parry's packed feature ids do.
+/// The lower bits of an edge's id are its slot among the neighbours of its lower vertex; the bits above are
+/// this vertex. With at most 2^15 vertices the id has 30 bits, as in parry's packed feature ids.
 const SLOT_BITS: u32 = 15;
 
 /// The neighbours of each vertex.
 #[derive(Clone, Debug)]
 #[repr(C)]
 pub(super) struct EdgeGraph {
-    /// The first neighbours of each vertex, which of most vertices are all.
+    /// The first neighbours of each vertex. Most vertices have no others.
     pub(super) blocks: Box<[NeighborBlock]>,
-    /// Those after them, in no order that matters.
+    /// The other neighbours, in no particular order.
     pub(super) overflow: Box<[NeighborBlock]>,
 }
 
-/// Neighbours of a vertex, clockwise seen from outside. Unused slots repeat the first
-/// neighbour, which comes after the last one. Where there are more, the last one is also the first in the next block.
+/// Neighbours of a vertex, clockwise seen from outside. Unused slots repeat the first neighbour, which also
+/// follows the last one. If there are more, the last one is repeated as the first in the next block.
 ///
-/// Each vertex has one, so that it is found without another look into memory; and by its alignment
-/// it is on one line of the cache.
+/// Each vertex has its own first block, so that no pointer need be followed to it, and each block lies on one
+/// cache line.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(32))]
 pub(super) struct NeighborBlock {
-    /// Ids of vertices; the highest bits of the first two are marks.
+    /// Vertices. The highest bits of the first two are marks.
     pub(super) to: [u16; BLOCK],
-    /// The face left of the edge to each of them. Right of it is that left of the next one. Where there
-    /// are more neighbours, the last entry is not a face but the place of their block.
+    /// The face left of the edge to each of them; the face right of it is the next entry. If there are more
+    /// neighbours, the last entry is the index of the next block instead.
     pub(super) left: [u16; BLOCK],
 }
 
-/// On a triangulated surface each vertex has six neighbours on the average.
+/// On average, a vertex of a triangulated surface has six neighbours.
 pub(super) const BLOCK: usize = 8;
 
-/// A bit that no id of a vertex has.
+/// A bit that no vertex id has.
 pub(super) const MARK: u16 = 1 << 15;
-/// The neighbour whose mark says that at this vertex a tie must be looked into.
+/// The entry whose mark says that ties at this vertex need a plateau search.
 pub(super) const PLATEAU_SEARCH: usize = 0;
-/// The neighbour whose mark shows that another block has more of them.
+/// The entry whose mark says that another block follows.
 pub(super) const OVERFLOW: usize = 1;
-/// The last slot of a block, and how many of its neighbours the next block does not repeat.
+/// The last slot of a block. As a number, it is how many neighbours the next block does not repeat.
 pub(super) const LAST: usize = BLOCK - 1;
 
 impl NeighborBlock {
@@ -55,19 +55,20 @@ impl NeighborBlock {
         to
     }
 
-    /// Whether a climb must look into ties at this vertex.
+    /// Whether ties at this vertex need a plateau search.
     #[inline(always)]
     pub fn needs_plateau_search(&self) -> bool {
         self.to[PLATEAU_SEARCH] & MARK != 0
     }
 
-    /// Whether the vertex has others after these.
+    /// Whether another block follows.
     #[inline(always)]
     pub fn has_overflow(&self) -> bool {
         self.to[OVERFLOW] & MARK != 0
     }
 
-    /// The faces left of the edges to them, but for the last one where there are others after it.
+    /// The faces left of the edges to the neighbours. If another block follows, the last entry repeats the
+    /// first.
     #[inline(always)]
     fn left(&self) -> [u16; BLOCK] {
         let mut left = self.left;
@@ -93,7 +94,7 @@ impl EdgeGraph {
             .then(|| &self.overflow[usize::from(block.left[LAST])])
     }
 
-    /// A block and those after it.
+    /// A block and all blocks after it.
     #[inline(always)]
     pub fn blocks_from<'a>(
         &'a self,
@@ -107,7 +108,8 @@ impl EdgeGraph {
         self.blocks_from(self.block(vertex))
     }
 
-    /// The block with this slot, and the slot in it; there may be neither vertex nor slot.
+    /// The block that has this slot of a vertex, and the slot within it. `None` if there is no such vertex or
+    /// slot.
     #[inline(always)]
     fn find(&self, vertex: VertexId, mut slot: usize) -> Option<(&NeighborBlock, usize)> {
         let mut block = self.blocks.get(vertex.index())?;
@@ -127,7 +129,7 @@ impl EdgeGraph {
         Some((block.to[slot] & !MARK).into())
     }
 
-    /// The neighbours of a vertex; the first may be repeated.
+    /// The neighbours of a vertex. The first may be repeated.
     #[inline]
     pub fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = u16> {
         self.blocks(vertex).flat_map(NeighborBlock::to)
@@ -148,13 +150,13 @@ impl EdgeGraph {
         self.blocks(vertex).map(NeighborBlock::left)
     }
 
-    /// The id of an edge, the same for both directions.
+    /// The id of an edge. It is the same in both directions.
     pub fn edge_between(&self, from: VertexId, to: VertexId) -> Option<EdgeId> {
         Some(pack_edge(from.min(to), self.edge_slot(from, to)?))
     }
 
-    /// What the id of an edge has beside its lower vertex: its first slot there. All are looked
-    /// at: where a search would end is not predictable.
+    /// The first slot of an edge at its lower vertex. It looks at all slots: where a search would end is not
+    /// predictable.
     #[inline]
     pub fn edge_slot(&self, from: VertexId, to: VertexId) -> Option<u16> {
         const NONE: usize = usize::MAX;

@@ -1,5 +1,5 @@
-//! Convex hulls prepared for coherent queries: edge graph, faces, and a way to extreme vertices,
-//! which is a climb from a start-vertex table, or for small ones a scan.
+//! Convex hulls prepared for coherent queries: the edge graph, the faces, and a search for extreme vertices.
+//! Large hulls are climbed from a start-vertex table, small ones are scanned.
 
 pub(crate) mod build;
 mod climb;
@@ -23,11 +23,11 @@ use graph::EdgeGraph;
 use scan::Scan;
 use start_table::StartTable;
 
-/// A convex polytope with everything precomputed that a query needs.
+/// A convex polytope, with everything that a query needs precomputed.
 ///
 /// Lengths are in the units of the points it was built from, positions in their frame.
-// In this order, and aligned, so that what proves most pairs apart is on one line of the cache: the bounding sphere, and
-// where points and neighbours are.
+// Most pairs are proved apart by the bounding sphere, and by the pointers to points and neighbours. This
+// order and alignment puts these on one cache line.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub struct Hull {
@@ -42,9 +42,9 @@ pub struct Hull {
 /// How extreme vertices are found.
 #[derive(Clone, Debug)]
 enum SupportSearch {
-    /// In a small hull, by looking at all.
+    /// A small hull: look at every vertex.
     Scan(Scan),
-    /// By hill climbing.
+    /// A large hull: climb from a start vertex.
     Climb(StartTable),
 }
 
@@ -54,7 +54,7 @@ impl Hull {
         &self.points
     }
 
-    /// The number of faces after coplanar triangles were joined.
+    /// The number of faces, after coplanar triangles were merged.
     pub fn face_count(&self) -> usize {
         self.faces.len()
     }
@@ -69,12 +69,12 @@ impl Hull {
         (0..self.face_count()).map(FaceId::new)
     }
 
-    /// Bytes of heap memory held. A surface of triangles, six around each vertex, costs 118 bytes
-    /// per vertex: 12 for the point, 32 for the neighbours and the faces between them, 48 for the
-    /// planes of two faces, 24 for their corners and edges, 2 for the start table. A vertex with more
-    /// than eight neighbours costs 32 more. Joined faces cost less; nearly coplanar ones, of which a
-    /// finely triangulated round hull is full, some 20 bytes per vertex more. Hulls that are scanned
-    /// have 12 bytes per vertex for that instead of the table.
+    /// The heap memory in bytes. A surface of triangles, with six around each vertex, takes 118 bytes per
+    /// vertex: 12 for the point, 32 for the neighbours and the faces between them, 48 for the planes of two
+    /// faces, 24 for their corners and edges, and 2 for the start table. A vertex with more than eight
+    /// neighbours takes 32 more. Merged faces take less. Nearly coplanar faces, common on finely triangulated
+    /// round hulls, take some 20 bytes per vertex more. Hulls that are scanned need 12 bytes per vertex
+    /// instead of the start table.
     pub fn heap_bytes(&self) -> usize {
         let search = match &self.search {
             SupportSearch::Scan(scan) => scan.heap_bytes(),
@@ -83,8 +83,8 @@ impl Hull {
         size_of_val(&*self.points) + search + self.graph.heap_bytes() + self.faces.heap_bytes()
     }
 
-    /// The extreme vertices in many directions. Their climbs take the first step together: it is the
-    /// one from memory that is in no cache, and so the processor waits for all of it at once.
+    /// The extreme vertices in many directions. All climbs take their first step together: its memory is not
+    /// in the cache yet, so the processor waits once for all of them.
     pub(crate) fn extreme_vertices<const N: usize>(&self, dirs: [DVec3; N]) -> [VertexId; N] {
         match &self.search {
             SupportSearch::Scan(scan) => {
@@ -107,8 +107,9 @@ impl Hull {
         }
     }
 
-    /// The extreme vertex in a direction. The coordinates one by one come in registers: a vector
-    /// that was written to memory by coordinates and is read in pairs is waited for.
+    /// The extreme vertex in a direction. Its coordinates are separate arguments, so that they stay in
+    /// registers: a vector that is written one coordinate at a time and read in pairs stalls on store
+    /// forwarding.
     #[inline(never)]
     fn extreme_vertex(&self, x: f64, y: f64, z: f64, start: VertexId, cost: &mut Cost) -> VertexId {
         debug_assert!(start.index() < self.points.len(), "no vertex: {start}");

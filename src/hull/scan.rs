@@ -1,8 +1,8 @@
-//! Support by looking at every vertex. On small hulls that takes less time than a climb, which has
-//! to wait for each step to know the next, and no branch in it depends on the data.
+//! Support by looking at every vertex. On small hulls this is faster than a climb, which must finish each
+//! step before it knows the next, and no branch depends on the data.
 //!
-//! In f32 first, with known error; of the vertices that may be highest after that, of which there
-//! is mostly one, the highest in f64. So the answer is exact.
+//! Heights are compared in f32 first, with a known error. The vertices that may still be the highest, mostly
+//! a single one, are compared in f64. So the answer is exact.
 
 use std::array;
 use std::ops::RangeInclusive;
@@ -13,30 +13,30 @@ use glam::{DVec3, Vec3};
 use crate::support::VertexId;
 use crate::tolerance::SCAN_ROUNDING;
 
-/// Up to this many vertices, as many as a mask has bits, a scan is quicker than a cold climb, with 64
-/// by a third, and no slower than a warm one. With 100 a warm climb is quicker by 2 %, and GJK's
-/// climbs from iteration to iteration are.
+/// Up to this many vertices, the number of bits of a mask, a scan is faster than a cold climb (with 64 by a
+/// third) and no slower than a warm one. With 100 vertices, warm climbs are 2 % faster, and so are GJK's
+/// climbs from iteration to iteration.
 pub(super) const LARGEST: usize = 64;
 
-/// Largest coordinates of directions that f32 takes as they are: nothing overflows, and what
-/// underflows is far below the rounding.
+/// Directions whose largest coordinate is in this range are converted to f32 as they are: nothing overflows,
+/// and anything that underflows is far below the rounding.
 const SIZES: RangeInclusive<f64> = 1e-18..=1e18;
 
-/// Vertices are looked at in eights.
+/// How many vertices are compared at once.
 const LANES: usize = 8;
 
 /// The vertices of a small hull.
 #[derive(Clone, Debug)]
 pub(super) struct Scan {
-    /// Coordinate by coordinate in eights, from the centre, in radii. The last one is filled up with
-    /// its first vertex.
+    /// Eight vertices a row, coordinate by coordinate, relative to the centre and in units of the radius. The
+    /// last row is filled up with its first vertex.
     rows: Box<[[f32x8; 3]]>,
     /// A bit for each vertex.
     all: u64,
 }
 
 impl Scan {
-    /// `None` for a hull that is quicker to climb.
+    /// `None` for a hull that is faster to climb.
     pub fn new(points: &[Vec3], center: DVec3, radius: f64) -> Option<Self> {
         if points.len() > LARGEST {
             return None;
@@ -52,9 +52,9 @@ impl Scan {
         })
     }
 
-    /// The extreme vertex of `points` in direction `dir`: of those that tie the preferred one, so
-    /// that contacts stay where they are, or the first. (Inlined with all it calls: a direction that goes
-    /// through memory costs more time than the scan.)
+    /// The extreme vertex of `points` in direction `dir`. Among ties it is the preferred vertex, so that
+    /// contacts stay where they are, or else the first. (This is inlined with everything it calls: passing
+    /// the direction through memory takes longer than the scan.)
     #[inline(always)]
     pub fn extreme_vertex(&self, points: &[Vec3], dir: DVec3, preferred: VertexId) -> VertexId {
         let mut candidates = self.candidates(dir);
@@ -78,11 +78,11 @@ impl Scan {
         highest.into()
     }
 
-    /// A bit for each vertex that may be the highest; there is one at least.
+    /// A bit for each vertex that may be the highest. At least one is set.
     #[inline(always)]
     fn candidates(&self, dir: DVec3) -> u64 {
         let size = dir.abs().max_element();
-        // A division takes a quarter of the time of a scan; directions are mostly unit vectors.
+        // A division takes a quarter of the time of a scan, and most directions are unit vectors.
         let (dir, size) = if SIZES.contains(&size) {
             (dir, size)
         } else {
@@ -105,7 +105,7 @@ impl Scan {
             candidates |= u64::from(bits) << (LANES * number);
         }
         candidates &= self.all;
-        // A direction that is zero or no number has none.
+        // No bit is set for a direction that is zero or NaN.
         if candidates == 0 { 1 } else { candidates }
     }
 
@@ -132,8 +132,7 @@ mod tests {
         DVec3::from([(); 3].map(|()| 2.0 * rng.rand_float() - 1.0))
     }
 
-    /// Whatever the number of points, their size and place, and the direction's length; also of
-    /// points that nearly tie.
+    /// For any number, size and place of points and any length of the direction, even if points nearly tie.
     #[test]
     fn the_highest_in_f64_is_found() {
         let mut rng = oorandom::Rand64::new(3);

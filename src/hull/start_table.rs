@@ -1,11 +1,11 @@
-//! A table of extreme vertices over the directions, so that a cold climb starts near its end.
+//! A table from directions to extreme vertices, so that a cold climb starts near its end.
 
 use glam::DVec3;
 
 use crate::support::VertexId;
 
-/// A cell for each vertex, up to this many cells per cube edge: enough for hulls of 6,000 vertices. So
-/// half of all climbs begin where they end; with half of the cells 40 % do.
+/// There is a cell for each vertex, up to this many cells per cube edge, which is enough for 6,000 vertices.
+/// With these, half of all climbs begin where they end; with half as many cells 40 % do.
 const FINEST: usize = 32;
 
 /// The six faces of the cube of directions, `grid * grid` cells each, one vertex a cell.
@@ -16,8 +16,8 @@ pub(super) struct StartTable {
 }
 
 impl StartTable {
-    /// Fills the table by asking `support` for the middle direction of each cell; it is given
-    /// the answer of the cell before as a start.
+    /// Fills the table by calling `support` for the middle direction of each cell. Each call starts from the
+    /// vertex of the previous cell.
     pub fn new(vertex_count: usize, mut support: impl FnMut(DVec3, VertexId) -> VertexId) -> Self {
         let grid = (vertex_count / 6).isqrt().clamp(1, FINEST);
         let mut last = VertexId::default();
@@ -41,7 +41,7 @@ impl StartTable {
     }
 }
 
-/// The cell that holds `dir`; any cell for a direction that is zero or not finite.
+/// The cell that contains `dir`; any cell if the direction is zero or not finite.
 fn cell_of(grid: usize, dir: DVec3) -> usize {
     let size = dir.abs();
     let axis = if size.x >= size.y && size.x >= size.z {

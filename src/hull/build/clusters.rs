@@ -8,8 +8,8 @@ use crate::hull::graph::EdgeGraph;
 use crate::support::FaceId;
 use crate::tolerance::CLUSTER_ANGLE_COS;
 
-/// A cluster has no more members than these, so that one contact is never the work of thousands of
-/// faces. What is left of a larger flat region becomes a cluster beside it.
+/// A cluster has at most this many members, so that one contact never has to process thousands of faces. The
+/// rest of a larger flat region becomes another cluster.
 const MAX_MEMBERS: usize = 64;
 
 /// Grows clusters from these faces, the largest first.
@@ -63,8 +63,7 @@ fn adjacent_faces(faces: &Faces, graph: &EdgeGraph, face: u16) -> impl Iterator<
     })
 }
 
-/// The faces that are no members around those vertices of the members that are inside of the
-/// outline.
+/// The faces that are not members, but meet a vertex of a member inside the outline.
 fn covered_nonmembers(
     faces: &Faces,
     graph: &EdgeGraph,
@@ -94,8 +93,8 @@ impl SeedPlane {
         }
     }
 
-    /// Whether a face, and all that is seen of it from the seed, lies within the cluster's angle. A
-    /// sliver without a plane is judged by its corners alone.
+    /// Whether a face and all of its corners, seen from the seed, lie within the cluster's angle. A sliver
+    /// has no plane and is judged by its corners alone.
     fn accepts(&self, points: &[DVec3], faces: &Faces, face: FaceId) -> bool {
         let sine = (1.0 - CLUSTER_ANGLE_COS * CLUSTER_ANGLE_COS).sqrt();
         let near = |corner: &FaceCorner| {
@@ -129,7 +128,7 @@ impl SeedPlane {
     }
 }
 
-/// Half of an outline, from the first point to before the last.
+/// Half of an outline, from the first point up to the last, which is left out.
 fn half_outline<'a>(corners: impl Iterator<Item = &'a (DVec2, u16)>) -> Vec<u16> {
     let mut chain: Vec<(DVec2, u16)> = Vec::new();
     for &corner in corners {

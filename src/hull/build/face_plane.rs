@@ -14,16 +14,16 @@ pub(super) struct FacePlane {
 }
 
 impl FacePlane {
-    /// That of a sliver whose direction is rounding only: no plane of the hull, and farther out
-    /// than any. Outlines have none either.
+    /// The plane of a sliver, whose direction is mere rounding: it is no plane of the hull, and farther out
+    /// than any. Outlines have no plane either.
     pub const NONE: Self = Self {
         normal: Vec3::ZERO,
         offset: f64::INFINITY,
         is_overtopped: false,
     };
 
-    /// Through the outermost of the polygon's corners and their neighbours: on a convex hull no
-    /// vertex is farther out.
+    /// The plane goes through the outermost of the polygon's corners and their neighbours: on a convex hull
+    /// no vertex is farther out.
     pub fn new(
         points: &[DVec3],
         mesh: &HalfEdgeMesh<'_>,

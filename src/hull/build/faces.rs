@@ -1,4 +1,4 @@
-//! Joining coplanar triangles to faces.
+//! Merging coplanar triangles into faces.
 
 use std::{iter, mem};
 
@@ -15,19 +15,19 @@ use crate::hull::graph::EdgeGraph;
 use crate::support::FaceId;
 use crate::tolerance::FACE_FLATNESS;
 
-/// What became of triangles.
+/// The result of merging triangles.
 pub(in crate::hull) struct MergedFaces {
-    /// The face that each of them went to.
+    /// The face of each triangle.
     pub face_of: Vec<u16>,
-    /// The faces that may have others beside them in a cluster, by their largest triangles.
+    /// The faces from which clusters may grow, ordered by their largest triangles.
     seeds: Vec<u16>,
-    /// The faces that have a vertex beside them higher than one of their corners.
+    /// The faces with a neighbouring vertex that is higher than one of their corners.
     pub overtopped: Vec<u16>,
 }
 
 impl Faces {
-    /// Joins the triangles of a surface. The faces are in the order of their first triangles, so that
-    /// those around a vertex lie together where triangles do.
+    /// Merges the triangles of a surface. Faces are in the order of their first triangles, so that faces
+    /// around a vertex lie as near in memory as the triangles do.
     pub fn new(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, radius: f64) -> (Self, MergedFaces) {
         let count = mesh.triangles.len();
         let surface = AreaVectors::new(points, mesh.triangles, radius);
@@ -67,7 +67,7 @@ impl Faces {
                 add(&polygon, region);
                 face_count += 1;
             } else {
-                // Triangle by triangle where it is not one convex polygon.
+                // A region that is not a convex polygon becomes one face per triangle.
                 for &t in region {
                     add(&[3 * t, 3 * t + 1, 3 * t + 2], &[t]);
                     face_count += 1;
@@ -85,7 +85,7 @@ impl Faces {
         (faces, merged)
     }
 
-    /// The faces with an edge to another one that is nearly flat.
+    /// The faces that have a nearly flat edge to another face.
     fn cluster_seeds(
         &self,
         mesh: &HalfEdgeMesh<'_>,
@@ -96,7 +96,7 @@ impl Faces {
         if flat.is_empty() {
             return Vec::new();
         }
-        // Without a plane a face may join any cluster.
+        // A face without a plane may join any cluster.
         let has_planes = (0..self.len()).all(|face| self.normal(FaceId::new(face)) != DVec3::ZERO);
         let mut may_grow = vec![!has_planes; self.len()];
         for h in (0..3 * face_of.len() as HalfEdge).filter(|&h| flat.contains(h)) {
@@ -108,7 +108,7 @@ impl Faces {
             .collect()
     }
 
-    /// Finds the clusters, when the `graph` knows the faces.
+    /// Finds the clusters. The `graph` must know the faces already.
     pub fn add_clusters(&mut self, points: &[DVec3], graph: &EdgeGraph, merged: &MergedFaces) {
         let clusters = grow_clusters(points, self, graph, &merged.seeds);
         if clusters.is_empty() {
@@ -160,7 +160,7 @@ impl Builder {
         self.corners.extend(corners);
     }
 
-    /// The first `count` polygons are faces, the others outlines of clusters.
+    /// The first `count` polygons are faces; the others are outlines of clusters.
     fn finish(mut self, count: usize, clusters: FaceClusters) -> Faces {
         self.add(&FacePlane::NONE, iter::empty());
         Faces {

@@ -1,5 +1,5 @@
-//! Which edges of a surface are nearly flat. Faces are joined and clusters grow over these alone, and
-//! most hulls have few of them.
+//! Which edges of a surface are nearly flat. Faces are merged and clusters grow only over these, and most
+//! hulls have few of them.
 
 use glam::DVec3;
 
@@ -22,9 +22,9 @@ pub(super) fn longest_side(points: &[DVec3], triangle: [u32; 3]) -> f64 {
 pub(super) struct AreaVectors {
     /// Twice their area vectors.
     pub vectors: Vec<DVec3>,
-    /// The lengths of these.
+    /// The lengths of these vectors.
     pub areas: Vec<f64>,
-    /// Whether rounding of its corners decides where a triangle looks.
+    /// Whether the normal of a triangle depends on how its corners are rounded.
     pub is_sliver: Vec<bool>,
 }
 
@@ -51,7 +51,7 @@ impl AreaVectors {
     }
 }
 
-/// The edges at which a surface bends by less than four degrees, and those of slivers.
+/// The edges at which a surface bends by less than four degrees, and all edges of slivers.
 pub(super) struct NearlyFlatEdges {
     /// For each half-edge.
     is_flat: Vec<bool>,

@@ -1,16 +1,18 @@
-//! Flat sides in a triangulation of our own, so that a hull does not depend on the one it came in.
+//! A triangulation of our own for flat sides, so that a hull does not depend on the triangulation in the
+//! input.
 //!
-//! A flat side is a polygon whose triangulation says nothing about the shape, but ids of edges depend
-//! on it. If it is another one whenever a shape is made anew, a prepared hull must be told from it edge
-//! by edge.
+//! The triangulation of a flat side says nothing about the shape, but edge ids depend on it. If it differed
+//! whenever a shape is rebuilt, every edge would have to be compared to find out whether a prepared hull
+//! still fits.
 
 use glam::DVec3;
 
 use super::half_edge::{HalfEdge, HalfEdgeMesh, next};
 use crate::tolerance::{BENT_EDGE, FLAT_EDGE, FLAT_SIDE};
 
-/// The triangles of a surface, in an order and over diagonals that depend on its vertices only. `None`
-/// if that cannot be promised: a side is not a strictly convex polygon, hardly flat or hardly bent.
+/// The triangles of a surface, in an order and with diagonals that depend only on its vertices. `None` if
+/// this cannot be guaranteed: a side is not a strictly convex polygon, or it is hardly flat, or hardly bent
+/// at its border.
 pub(in crate::hull) fn retriangulated(
     points: &[DVec3],
     triangles: &[[u32; 3]],
@@ -27,16 +29,16 @@ pub(in crate::hull) fn retriangulated(
     Some(all)
 }
 
-/// The polygons that a surface consists of.
+/// The flat polygons of a surface.
 struct Sides<'a> {
     points: &'a [DVec3],
     mesh: &'a HalfEdgeMesh<'a>,
     radius: f64,
     polygons: Vec<Vec<u32>>,
-    /// Of each half-edge between polygons: the unit normal of its polygon, and how far beside it the
-    /// nearest other corner is.
+    /// For each half-edge between polygons: the unit normal of its polygon, and the distance from the edge to
+    /// the nearest other corner.
     borders: Vec<(DVec3, f64)>,
-    /// Of each corner of the polygon at hand, the half-edge around it that starts there.
+    /// For each corner of the current polygon, the border half-edge that starts there.
     outgoing: Vec<HalfEdge>,
 }
 
@@ -97,7 +99,7 @@ impl<'a> Sides<'a> {
                 }
             }
         }
-        // A polygon without a hole, or a corner inside.
+        // Only a polygon without holes and without corners inside has this many triangles.
         if border.len() != count + 2 {
             return None;
         }
@@ -125,7 +127,7 @@ impl<'a> Sides<'a> {
         Some(())
     }
 
-    /// Sorts the border of a polygon, counter-clockwise from the lowest corner on.
+    /// Sorts the border of a polygon counter-clockwise, starting from the lowest corner.
     fn sort(&mut self, border: &mut [HalfEdge]) -> Option<()> {
         for &h in &*border {
             self.outgoing[self.mesh.start(h) as usize] = h;
@@ -144,7 +146,7 @@ impl<'a> Sides<'a> {
         Some(())
     }
 
-    /// Whether the surface bends between two polygons, whatever triangles they are made of.
+    /// Whether the surface bends between two polygons, however these are triangulated.
     fn bends(&self, h: HalfEdge) -> bool {
         let [(here, nearest_here), (there, nearest_there)] =
             [h, self.mesh.twin(h)].map(|h| self.borders[h as usize]);
@@ -153,8 +155,8 @@ impl<'a> Sides<'a> {
     }
 }
 
-/// The triangles of a polygon, each from its lowest corner on, cut off from both ends in turn: so no
-/// corner has many of them.
+/// The triangles of a polygon, each starting at its lowest corner. They are cut off from both ends in turn,
+/// so that no corner has many of them.
 fn zigzag(polygon: &[u32]) -> Vec<[u32; 3]> {
     let (mut low, mut high) = (0, polygon.len() - 1);
     let mut triangles = Vec::with_capacity(polygon.len() - 2);

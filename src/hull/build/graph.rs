@@ -7,7 +7,7 @@ use crate::hull::graph::{BLOCK, EdgeGraph, LAST, MARK, NeighborBlock, OVERFLOW, 
 use crate::support::VertexId;
 
 impl NeighborBlock {
-    /// From the sides that leave a vertex, of which the `first` is to fill up with.
+    /// From sides that leave a vertex. The `first` fills up unused slots.
     fn new(sides: &[DirectedEdge], first: &DirectedEdge, face_of: &[u16]) -> Self {
         let sides: [&DirectedEdge; BLOCK] = array::from_fn(|i| sides.get(i).unwrap_or(first));
         Self {
@@ -16,7 +16,7 @@ impl NeighborBlock {
         }
     }
 
-    /// With others after it.
+    /// With another block after it.
     fn with_overflow(mut self, slot: usize) -> Self {
         self.to[OVERFLOW] |= MARK;
         self.left[LAST] = slot as u16;
@@ -25,13 +25,13 @@ impl NeighborBlock {
 }
 
 impl EdgeGraph {
-    /// From a surface whose triangles went to the faces `face_of`.
+    /// From a surface, and the face of each triangle.
     pub fn new(mesh: &HalfEdgeMesh<'_>, face_of: &[u16]) -> Self {
         let mut overflow = Vec::new();
         let blocks = (0..mesh.vertex_count()).map(|v| {
             let around = mesh.outgoing(v as u32);
             let block = |sides| NeighborBlock::new(sides, &around[0], face_of);
-            // From the last one on, so that each knows where the next is.
+            // From the last block to the first, since each stores the index of the next.
             let last = (around.len() - 2) / LAST;
             (1..=last)
                 .rev()
@@ -47,7 +47,7 @@ impl EdgeGraph {
         }
     }
 
-    /// Marks the vertices at which a climb must look into ties.
+    /// Marks the vertices at which ties need a plateau search.
     pub fn mark_plateau_search(&mut self, needs_plateau_search: impl Fn(&Self, VertexId) -> bool) {
         for v in 0..self.blocks.len() {
             if needs_plateau_search(self, VertexId::new(v)) {

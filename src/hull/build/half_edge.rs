@@ -1,31 +1,31 @@
-//! A closed triangulated surface as half-edges: what building needs of a mesh, in linear time.
+//! A closed triangulated surface as half-edges, built in linear time.
 
 use crate::hull::HullError;
 
 /// A side of a triangle, from one vertex to the next: number `3 t + k` is side `k` of triangle `t`.
 pub(in crate::hull) type HalfEdge = u32;
 
-/// A half-edge with its end.
+/// A half-edge with its end vertex.
 #[derive(Clone, Copy, Default)]
 pub(in crate::hull) struct DirectedEdge {
     pub to: u16,
     pub half_edge: HalfEdge,
 }
 
-/// Triangles, counter-clockwise seen from outside, that form one sphere.
+/// Triangles, counter-clockwise seen from outside, that form a topological sphere.
 pub(in crate::hull) struct HalfEdgeMesh<'a> {
     pub triangles: &'a [[u32; 3]],
-    /// Those that leave vertex `v` are `first[v]..first[v + 1]`, clockwise seen from outside.
+    /// The sides that leave vertex `v` are at `first[v]..first[v + 1]`, clockwise seen from outside.
     sides: Vec<DirectedEdge>,
     first: Vec<u32>,
-    /// Where each half-edge stands in `sides`.
+    /// The index of each half-edge in `sides`.
     position: Vec<u32>,
-    /// The same side as the neighbouring triangle has it.
+    /// The half-edge of the neighbouring triangle on the same edge.
     twin: Vec<HalfEdge>,
 }
 
 impl<'a> HalfEdgeMesh<'a> {
-    /// From triangles over `count` vertices, of which there are no more than 16 bits can name.
+    /// From triangles over `count` vertices, whose indices must fit into 16 bits.
     pub fn new(count: usize, triangles: &'a [[u32; 3]]) -> Result<Self, HullError> {
         let (sides, first) = sides_by_start(triangles, count);
         if let Some(loose) = first.windows(2).position(|pair| pair[0] == pair[1]) {
@@ -64,15 +64,14 @@ impl<'a> HalfEdgeMesh<'a> {
         self.twin[h as usize]
     }
 
-    /// The sides that leave a vertex, clockwise: right of each of them is the triangle left of the
-    /// next one.
+    /// The sides that leave a vertex, clockwise: the triangle right of each is the one left of the next.
     #[inline]
     pub fn outgoing(&self, vertex: u32) -> &[DirectedEdge] {
         let v = vertex as usize;
         &self.sides[self.first[v] as usize..self.first[v + 1] as usize]
     }
 
-    /// The slot of an edge among those that leave its lower vertex.
+    /// The slot of an edge among the sides that leave its lower vertex.
     pub fn edge_slot(&self, h: HalfEdge) -> u16 {
         let twin = self.twin(h);
         let outgoing = if self.start(h) < self.start(twin) {
@@ -83,10 +82,10 @@ impl<'a> HalfEdgeMesh<'a> {
         (self.position[outgoing as usize] - self.first[self.start(outgoing) as usize]) as u16
     }
 
-    /// Finds the twin of each side. `false` if one has none, or several.
+    /// Finds the twin of each side. `false` if a side has no twin, or several.
     fn pair_twins(&mut self) -> bool {
         const NOWHERE: u32 = u32::MAX;
-        // Of the vertex at hand, the side that leaves it to each neighbour; and whose it is.
+        // For each neighbour, the vertex that last had a side to it, and that side.
         let mut side_to = vec![(NOWHERE, 0); self.vertex_count()];
         (0..self.vertex_count() as u32).all(|v| {
             let outgoing = self.first[v as usize] as usize..self.first[v as usize + 1] as usize;
@@ -105,8 +104,8 @@ impl<'a> HalfEdgeMesh<'a> {
         })
     }
 
-    /// Brings the sides around each vertex into their order, from that to the lowest vertex on.
-    /// `false` if the triangles around a vertex are not one fan.
+    /// Sorts the sides around each vertex, starting with the side to the lowest neighbour. `false` if the
+    /// triangles around a vertex are not a single fan.
     fn sort_around_vertices(&mut self) -> bool {
         (0..self.vertex_count()).all(|v| {
             let [start, end] = [v, v + 1].map(|v| self.first[v] as usize);
@@ -128,7 +127,7 @@ impl<'a> HalfEdgeMesh<'a> {
         })
     }
 
-    /// Euler's number is that of a sphere, and all of it hangs together.
+    /// Whether the surface is connected and has the Euler characteristic of a sphere.
     fn is_sphere(&self) -> bool {
         let count = self.vertex_count();
         if self.triangles.len() + 4 != 2 * count {
@@ -156,7 +155,7 @@ pub(in crate::hull) fn next(h: HalfEdge) -> HalfEdge {
     if h % 3 == 2 { h - 2 } else { h + 1 }
 }
 
-/// The side before it in the same triangle.
+/// The previous side of the same triangle.
 #[inline]
 fn previous(h: HalfEdge) -> HalfEdge {
     if h.is_multiple_of(3) { h + 2 } else { h - 1 }
@@ -167,11 +166,11 @@ pub(in crate::hull) fn triangle(h: HalfEdge) -> usize {
     h as usize / 3
 }
 
-/// The sides of all triangles by the vertex that they leave (a counting sort), and where those of
-/// each vertex begin.
+/// The sides of all triangles, sorted by the vertex that they leave (a counting sort), and the first side of
+/// each vertex.
 fn sides_by_start(triangles: &[[u32; 3]], count: usize) -> (Vec<DirectedEdge>, Vec<u32>) {
     let starts = triangles.as_flattened();
-    // One place further on, so that filling moves each to where its own begin.
+    // The offsets are one entry too far. Filling moves each to its final value.
     let mut first = vec![0; count + 2];
     for &from in starts {
         first[from as usize + 2] += 1;

@@ -1,15 +1,15 @@
-//! The order of a hull's vertices in memory. A step of a climb looks at all neighbours of a vertex:
-//! as hull builders number them, each is on another line of the cache.
+//! The order of a hull's vertices in memory. A step of a climb reads all neighbours of a vertex. In the order
+//! in which hull builders number them, each neighbour is on another cache line.
 
 use glam::Vec3;
 
-/// Bits of a coordinate: some thousand cells in a row, where a hull has at most a few hundred
-/// vertices.
+/// Bits per coordinate. This makes about a thousand cells along an axis, along which a hull has at most a few
+/// hundred vertices.
 const BITS: u32 = 10;
 
-/// The vertices and triangles of a surface, renumbered so that what lies near in space lies near in
-/// memory: vertices along a curve that fills space (Morton, *A computer oriented geodetic data base
-/// and a new technique in file sequencing*, IBM, 1966), and triangles by their corners.
+/// The vertices and triangles of a surface, renumbered so that neighbours in space are neighbours in memory:
+/// vertices along a space-filling curve (Morton, *A computer oriented geodetic data base and a new technique
+/// in file sequencing*, IBM, 1966), and triangles by their corners.
 pub(in crate::hull) fn morton_order(
     points: &[Vec3],
     triangles: &[[u32; 3]],
@@ -25,7 +25,7 @@ pub(in crate::hull) fn morton_order(
     }
     let renumbered = triangles.iter().map(|triangle| {
         let [a, b, c] = triangle.map(|v| number[v as usize]);
-        // The same triangle, from its lowest corner.
+        // The same triangle, starting at its lowest corner.
         [[a, b, c], [b, c, a], [c, a, b]].into_iter().min()
     });
     let mut triangles: Vec<[u32; 3]> = renumbered.flatten().collect();
@@ -34,7 +34,7 @@ pub(in crate::hull) fn morton_order(
     (points, triangles)
 }
 
-/// How far along the curve the cell with these coordinates is: their bits in turn.
+/// The position of a cell along the curve: the interleaved bits of its coordinates.
 fn morton_code(cell: Vec3) -> u32 {
     // Casts saturate.
     let coordinates = cell.to_array().map(|x| (x as u32).min((1 << BITS) - 1));
@@ -68,7 +68,7 @@ mod tests {
         turned.flatten().collect()
     }
 
-    /// Lines of the cache with points around a vertex, on the average.
+    /// How many cache lines the points around a vertex lie on, on average.
     fn lines(points: &[Vec3], triangles: &[[u32; 3]]) -> f64 {
         let mut around = vec![BTreeSet::new(); points.len()];
         for triangle in triangles {

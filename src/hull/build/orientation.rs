@@ -5,13 +5,13 @@ use glam::DVec3;
 
 use crate::tolerance::ORIENTATION_ROUNDING;
 
-/// The terms of the determinant: each of its 24 products is the sum of two numbers.
+/// The terms of the determinant: each of its 24 products is a sum of two numbers.
 const TERMS: usize = 48;
 
 /// How far `p` lies above a triangle that turns counter-clockwise seen from above, times twice the area
 /// of that triangle.
 ///
-/// All coordinates were f32. Then the sign is exact; the value is good up to rounding.
+/// The sign is exact if all coordinates are f32 values. The value is good up to rounding.
 pub(super) fn height_over([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
     let (u, v, w) = (b - a, c - a, p - a);
     let height = u.cross(v).dot(w);
@@ -37,7 +37,7 @@ fn exact_height([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
     sum.largest()
 }
 
-/// A sum as numbers that do not overlap, in the order of their magnitudes.
+/// A sum as non-overlapping numbers, ordered by magnitude.
 struct ExactSum {
     terms: [f64; TERMS],
     len: usize,
@@ -60,7 +60,7 @@ impl ExactSum {
         }
     }
 
-    /// Of three f32: two of them fit into one f64.
+    /// A product of three f32 values, as two f64: the product of two of them fits into one.
     fn add_product(&mut self, a: f64, b: f64, c: f64) {
         let pair = a * b;
         let product = pair * c;
@@ -85,13 +85,13 @@ impl ExactSum {
         self.len = kept;
     }
 
-    /// It has the sign of the sum.
+    /// This term has the sign of the sum.
     fn largest(&self) -> f64 {
         self.terms[..self.len].last().copied().unwrap_or(0.0)
     }
 }
 
-/// A sum, and what rounding took from it (Knuth, *The Art of Computer Programming* 2, 4.2.2).
+/// A sum and its rounding error (Knuth, *The Art of Computer Programming* 2, 4.2.2).
 fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let of_b = sum - a;

@@ -1,8 +1,8 @@
 //! The triangulated surface behind parry's convex polyhedron.
 //!
-//! Parry joins triangles up to 1.5 degrees apart, so that its faces may miss vertices; but it
-//! still lists all edges of the triangulation. Seen from a point inside, the edges around a
-//! vertex have one cyclic order, and neighbours in that order span the triangles again.
+//! parry merges triangles up to 1.5 degrees apart, so its faces may miss vertices. But it still lists all
+//! edges of the triangulation. Seen from a point inside, the edges around a vertex have a cyclic order, and
+//! successive edges in that order span the triangles.
 
 use std::cmp::Ordering;
 
@@ -14,10 +14,10 @@ use super::validate::MAX_VERTICES;
 use crate::hull::{Hull, HullError};
 use crate::tolerance::FLAT_EDGE;
 
-/// The hull of a polyhedron; that of its points where its surface is not a convex triangulation of
-/// them all.
+/// The hull of a polyhedron. If its surface is not a convex triangulation of all points, this is the hull of
+/// the points.
 ///
-/// Vertex ids are indices into [`Hull::points`], which are not in the order of the polyhedron's.
+/// Vertex ids are indices into [`Hull::points`], whose order differs from the polyhedron's.
 impl TryFrom<&ConvexPolyhedron> for Hull {
     type Error = HullError;
 
@@ -26,13 +26,13 @@ impl TryFrom<&ConvexPolyhedron> for Hull {
     }
 }
 
-/// The hull of a polyhedron, and what edges it depends on.
+/// The hull of a polyhedron, and the edges that it depends on.
 pub(crate) fn hull_and_diagonals(
     polyhedron: &ConvexPolyhedron,
 ) -> (Result<Hull, HullError>, Diagonals) {
     let points = polyhedron.points();
-    // All of them are vertices, but for those inside of flat sides: a hull builder would leave too
-    // many, and take seconds.
+    // All points are vertices, except those inside flat sides: a hull builder would keep too many of these,
+    // and take seconds.
     if points.len() > MAX_VERTICES {
         return (Err(HullError::TooManyPoints), Diagonals(Box::default()));
     }
@@ -51,8 +51,7 @@ pub(crate) fn hull_and_diagonals(
     }
 }
 
-/// A number that depends on nothing but the points and edges of a polyhedron, of which its hull is
-/// made; others seldom share it.
+/// A hash of the points and edges of a polyhedron, which determine its hull.
 pub(crate) fn fingerprint(polyhedron: &ConvexPolyhedron) -> u64 {
     let mix = |hash: u64, word: u64| {
         let mixed = (hash ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15);
@@ -67,10 +66,10 @@ pub(crate) fn fingerprint(polyhedron: &ConvexPolyhedron) -> u64 {
     points.chain(edges).fold(0, mix)
 }
 
-/// The edges that a hull depends on besides its points: which they are, and their ends.
+/// The edges that a hull depends on besides its points: their ids and their ends.
 ///
-/// Those across which the surface bends are in any triangulation of the points. The others may have
-/// been the other diagonal of their two triangles.
+/// Edges across which the surface bends are in every triangulation of the points. The others could have been
+/// the other diagonal of their two triangles.
 #[derive(Debug)]
 pub(crate) struct Diagonals(Box<[(u32, [u32; 2])]>);
 
@@ -110,7 +109,7 @@ pub(crate) fn same_polyhedron(a: &ConvexPolyhedron, b: &ConvexPolyhedron) -> boo
     same_points(a.points(), b.points()) && edges_a.eq(edges_b)
 }
 
-/// Whether two lists of points are the same bit by bit: one comparison of memory.
+/// Whether two lists of points are bitwise equal, in one comparison of memory.
 #[inline]
 pub(crate) fn same_points(a: &[Vec3], b: &[Vec3]) -> bool {
     bytemuck::cast_slice::<Vec3, u8>(a) == bytemuck::cast_slice::<Vec3, u8>(b)
@@ -124,7 +123,7 @@ pub(crate) fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> 
 /// A triangulated surface.
 struct Triangulation {
     triangles: Vec<[u32; 3]>,
-    /// The edges across which it hardly bends.
+    /// The edges across which the surface hardly bends.
     flat_edges: Vec<u32>,
     /// Around a point inside.
     radius: f64,
@@ -148,7 +147,7 @@ impl Triangulation {
             let here = points[v].as_dvec3();
             let outward = (here - inside).try_normalize()?;
             let (x, y) = outward.any_orthonormal_pair();
-            // Turn counter-clockwise about `outward`, whatever the handedness of the pair.
+            // These turn counter-clockwise about `outward`.
             let y = if x.cross(y).dot(outward) > 0.0 { y } else { -y };
             let v = v as u32;
             incident.clear();
@@ -171,7 +170,7 @@ impl Triangulation {
             incident.sort_unstable_by(|a, b| by_angle(a.seen, b.seen));
             for (i, side) in incident.iter().enumerate() {
                 let next = &incident[(i + 1) % incident.len()];
-                // Each triangle is met at all of its corners: keep it at the lowest.
+                // Each triangle is found at all three corners. Keep it at the lowest.
                 if v < side.end && v < next.end {
                     triangles.push([v, side.end, next.end]);
                 }
@@ -188,7 +187,7 @@ impl Triangulation {
         })
     }
 
-    /// The hull over diagonals that depend on the points only, where all flat edges are such.
+    /// The hull with diagonals that depend only on the points, if all flat edges are diagonals of flat sides.
     fn with_own_diagonals(&self, points: &[Vec3]) -> Option<Hull> {
         if self.flat_edges.is_empty() {
             return None;
@@ -216,7 +215,7 @@ fn is_flat([last, edge, next]: [DVec3; 3], height: f64) -> bool {
     before.dot(next).abs() <= height * area
 }
 
-/// Compressed rows of the edges at each vertex.
+/// The edges at each vertex, in compressed rows.
 fn edge_rows(count: usize, polyhedron: &ConvexPolyhedron) -> (Vec<usize>, Vec<u32>) {
     let mut first = vec![0; count + 1];
     for edge in polyhedron.edges() {

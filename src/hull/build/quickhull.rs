@@ -1,8 +1,9 @@
 //! The convex hull of points (Barber, Dobkin, Huhdanpaa, *The quickhull algorithm for convex hulls*,
 //! ACM Trans. Math. Softw. 22(4), 1996).
 //!
-//! Points are compared with planes by exact signs. So the horizon is always one loop, the surface is
-//! exactly convex, and each point is on or beneath it, whatever is coplanar, thin or in one place.
+//! Points are compared with planes by exact signs. So the horizon is always a single loop, the surface is
+//! exactly convex, and every point is on or beneath it, even if points are coplanar, coincide, or form a thin
+//! hull.
 
 use glam::{DVec3, Vec3};
 
@@ -10,16 +11,16 @@ use super::orientation::height_over;
 use super::validate::MAX_VERTICES;
 use crate::hull::HullError;
 
-/// The corners of the hull in the order of the points, and triangles counter-clockwise from outside.
+/// The corners of the hull in the order of the points, and its triangles, counter-clockwise from outside.
 ///
 /// # Errors
-/// The points lie in a plane, or more of them are corners than a hull may have.
+/// If the points lie in a plane, or more of them are corners than a hull may have.
 pub(super) fn convex_hull(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
     let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
     let mut surface = Surface::tetrahedron(&exact)?;
     surface.grow()?;
     let bends = surface.bends();
-    // Fewer than three edges bend at what lies in a flat side or on a straight edge.
+    // At a point in a flat side or on a straight edge, fewer than three edges bend.
     let corners: Vec<usize> = (0..points.len()).filter(|&v| bends[v] > 2).collect();
     let vertices: Vec<Vec3> = corners.iter().map(|&v| points[v]).collect();
     if surface.vertex_count > corners.len() {
@@ -40,9 +41,9 @@ struct HullFacet {
     vertices: [u32; 3],
     /// The facets beyond the sides from each vertex to the next.
     beyond: [u32; 3],
-    /// Points above it: each is with one of the facets that it is above.
+    /// Points above it. Each point is assigned to one of the facets that it is above.
     above: Vec<u32>,
-    /// The highest of them.
+    /// The highest of these points.
     peak: (f64, u32),
     is_removed: bool,
 }
@@ -59,7 +60,7 @@ impl HullFacet {
     }
 }
 
-/// A side of a facet that a new vertex sees from inside, with the facet beyond, which it does not see.
+/// An edge of the horizon, as the visible facet has it, with the facet beyond, which is not visible.
 struct HorizonEdge {
     from: u32,
     to: u32,
@@ -119,14 +120,14 @@ impl<'a> Surface<'a> {
         )
     }
 
-    /// Gives a point to the first facet from `first` on that it is above, if there is one.
+    /// Assigns a point to the first facet, from `first` on, that it is above, if there is one.
     fn hand_over(&mut self, point: u32, first: u32) {
         for facet in first..self.facets.len() as u32 {
             let height = self.height(facet, point);
             if height > 0.0 {
                 let facet = &mut self.facets[facet as usize];
                 facet.above.push(point);
-                // Of points in a plane, the first or last in the order of coordinates is a corner.
+                // Among points in a plane, the first and last in coordinate order are corners.
                 let place = |v: u32| self.points[v as usize].to_array();
                 let is_as_high = height == facet.peak.0 && place(point) > place(facet.peak.1);
                 if height > facet.peak.0 || is_as_high {
@@ -137,7 +138,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Takes in all points that are above a facet.
+    /// Expands the hull to all points that are above a facet.
     fn grow(&mut self) -> Result<(), HullError> {
         let (mut horizon, mut seen, mut unassigned) = (Vec::new(), Vec::new(), Vec::new());
         let mut facet = 0;
@@ -162,7 +163,8 @@ impl<'a> Surface<'a> {
         Ok(())
     }
 
-    /// Removes what a point sees, from one such facet on, and leaves the edges around it in `horizon`.
+    /// Removes all facets that a point sees, starting from one of them, and leaves the edges around them in
+    /// `horizon`.
     fn remove_seen(
         &mut self,
         eye: u32,
@@ -199,7 +201,7 @@ impl<'a> Surface<'a> {
         }
     }
 
-    /// Spans facets between a point and the horizon. The first of them.
+    /// Adds facets between a point and the horizon. Returns the first.
     fn close(&mut self, eye: u32, horizon: &[HorizonEdge]) -> u32 {
         let first = self.facets.len() as u32;
         for (id, edge) in (first..).zip(horizon) {
@@ -218,7 +220,7 @@ impl<'a> Surface<'a> {
         first
     }
 
-    /// How many of the edges at each vertex bend.
+    /// At how many edges of each vertex the surface bends.
     fn bends(&self) -> Vec<u32> {
         let mut bends = vec![0; self.points.len()];
         for (id, facet) in (0..).zip(&self.facets) {

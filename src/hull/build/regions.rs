@@ -1,4 +1,4 @@
-//! Regions of a surface that lie in one plane each.
+//! Regions of a surface, each of which lies in one plane.
 
 use std::cmp::Reverse;
 
@@ -8,20 +8,21 @@ use super::flat_edges::{AreaVectors, NearlyFlatEdges};
 use super::half_edge::{HalfEdge, HalfEdgeMesh, next, triangle};
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS};
 
-/// Sets of triangles that lie in one plane each.
+/// Sets of triangles, each of which lies in one plane.
 pub(super) struct CoplanarRegions {
-    /// The triangles, region by region, and where the regions begin.
+    /// The triangles, region by region, and the first triangle of each region.
     triangles: Vec<u32>,
     first: Vec<usize>,
     /// The region of each triangle.
     pub of: Vec<u32>,
 }
 
-/// In no region yet.
+/// Not yet in a region.
 const FREE: u32 = u32::MAX;
 
 impl CoplanarRegions {
-    /// Grows over flat edges from the largest triangles, whose normals are the most reliable.
+    /// Grows regions over flat edges, starting from the largest triangles, whose normals are the most
+    /// reliable.
     pub fn grow(
         points: &[DVec3],
         mesh: &HalfEdgeMesh<'_>,
@@ -33,7 +34,7 @@ impl CoplanarRegions {
         if flat.is_empty() {
             return Self::single(count);
         }
-        // The bits of numbers that are not negative are in their order.
+        // The bits of non-negative numbers sort as the numbers do.
         let largest_first = |area: &f64| Reverse(area.to_bits());
         let mut seeds: Vec<_> = surface.areas.iter().map(largest_first).zip(0..).collect();
         seeds.sort_unstable();
@@ -46,7 +47,7 @@ impl CoplanarRegions {
         let joins = |some: &[u32]| {
             let (normal, center) = plane(points, mesh.triangles, surface, some);
             move |t: usize| {
-                // The direction of a sliver is rounding only; its neighbours decide.
+                // The normal of a sliver is mere rounding, so its neighbours decide.
                 let turned = normal.dot(surface.vectors[t]) < FACE_ANGLE_COS * surface.areas[t];
                 let height = |v: u32| normal.dot(points[v as usize] - center);
                 let is_near = |&v: &u32| height(v).abs() <= FACE_FLATNESS * radius;
@@ -58,8 +59,8 @@ impl CoplanarRegions {
                 continue;
             }
             regions.add(mesh, flat, seed, joins(&[seed]));
-            // The corners of a small triangle are rounded, so its plane leaves a large side at the
-            // far end. The plane of all triangles that it found there does not.
+            // The corners of a small triangle are rounded, so its plane misses the far end of a large side.
+            // The plane of all triangles found so far does not.
             if let Some(found) = regions.take_back() {
                 regions.add(mesh, flat, seed, joins(&found));
             }
@@ -67,7 +68,7 @@ impl CoplanarRegions {
         regions
     }
 
-    /// Each triangle is a region.
+    /// Makes a region of each triangle.
     fn single(count: usize) -> Self {
         Self {
             triangles: (0..count as u32).collect(),
@@ -76,7 +77,7 @@ impl CoplanarRegions {
         }
     }
 
-    /// A new region: the triangles that hang together with `seed` over flat edges and join it.
+    /// Adds a region: the triangles that are connected with `seed` by flat edges and lie in its plane.
     fn add(
         &mut self,
         mesh: &HalfEdgeMesh<'_>,
@@ -101,7 +102,7 @@ impl CoplanarRegions {
         self.first.push(self.triangles.len());
     }
 
-    /// Takes the last region apart again, if it is more than its seed.
+    /// Dissolves the last region, unless it is only its seed.
     fn take_back(&mut self) -> Option<Vec<u32>> {
         let region = self.len() - 1;
         let start = self.first[region];
@@ -124,7 +125,7 @@ impl CoplanarRegions {
         &self.triangles[self.first[region]..self.first[region + 1]]
     }
 
-    /// Leaves the sides around a region in `polygon`; `false` if they are not one loop.
+    /// Writes the sides around a region to `polygon`. `false` if they are not a single loop.
     pub fn boundary(
         &self,
         mesh: &HalfEdgeMesh<'_>,
@@ -155,7 +156,7 @@ impl CoplanarRegions {
     }
 }
 
-/// The plane of some triangles: its normal, and their centroid.
+/// The plane of some triangles: its normal, and the centroid of the triangles.
 fn plane(
     points: &[DVec3],
     triangles: &[[u32; 3]],

@@ -30,11 +30,11 @@ pub(crate) fn surface_of_points(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32;
 impl Hull {
     /// The convex hull of a point cloud. It is exact: no point is left out.
     ///
-    /// Vertex ids are indices into [`points`](Self::points), not into the argument: points inside
-    /// the hull or of its sides are dropped, equal points are one vertex, and the order is another.
+    /// Vertex ids are indices into [`points`](Self::points), not into the argument: points inside the hull or
+    /// inside its sides are dropped, equal points become one vertex, and the order changes.
     ///
     /// # Errors
-    /// Names what is wrong with the points, see [`HullError`].
+    /// [`HullError`] says what is wrong with the points.
     ///
     /// ```
     /// use glam::Vec3;
@@ -49,8 +49,7 @@ impl Hull {
         Self::from_reordered_triangles(vertices, &triangles)
     }
 
-    /// As [`from_triangles`](Self::from_triangles), with the vertices in the order in which they are
-    /// quickest to climb over.
+    /// Like [`from_triangles`](Self::from_triangles), but reorders the vertices for faster climbs.
     pub(in crate::hull) fn from_reordered_triangles(
         points: Vec<Vec3>,
         triangles: &[[u32; 3]],
@@ -67,7 +66,7 @@ impl Hull {
     /// Vertex ids are indices into `points`.
     ///
     /// # Errors
-    /// Names what is wrong with the surface, see [`HullError`].
+    /// [`HullError`] says what is wrong with the surface.
     pub fn from_triangles(points: Vec<Vec3>, triangles: &[[u32; 3]]) -> Result<Self, HullError> {
         if points.len() < 4 {
             return Err(HullError::TooFewPoints);
@@ -79,7 +78,7 @@ impl Hull {
         validate_triangles(&points, triangles)?;
         validate_distinct(&points)?;
         let mesh = HalfEdgeMesh::new(points.len(), triangles)?;
-        // All arithmetic is f64: converted once.
+        // Points are converted to f64 once.
         let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
         let (center, radius) = center_and_radius(&exact, triangles)?;
         let at_flat_edge = validate_convex(&exact, &mesh, radius)?;
@@ -124,7 +123,7 @@ impl Hull {
         Ok(hull)
     }
 
-    /// The centre must be clearly inside of every face.
+    /// The centre must be clearly inside every face.
     fn validate_interior(&self) -> Result<(), HullError> {
         let deep_inside = self.face_ids().all(|f| {
             self.face_offset(f) - self.face_normal(f).dot(self.center) > MIN_EXTENT * self.radius

@@ -1,4 +1,4 @@
-//! What is refused as the surface of a hull.
+//! The checks that the surface of a hull must pass.
 
 use glam::{DVec3, Vec3};
 
@@ -10,7 +10,7 @@ use crate::hull::faces::Faces;
 use crate::support::FaceId;
 use crate::tolerance::{BOWL, MAX_DENT, MAX_INWARD_HEIGHT, MIN_EXTENT};
 
-/// The most vertices a hull may have: its at most `2 n - 4` faces must have 16-bit ids.
+/// The largest number of vertices of a hull: the ids of its at most `2 n - 4` faces must fit into 16 bits.
 pub(super) const MAX_VERTICES: usize = 32_768;
 
 pub(super) fn validate_finite(points: &[Vec3]) -> Result<(), HullError> {
@@ -30,7 +30,7 @@ pub(super) fn validate_triangles(points: &[Vec3], triangles: &[[u32; 3]]) -> Res
     }
 }
 
-/// No two points are in the same place: corners of a mesh that were not welded.
+/// Refuses points that coincide, such as corners of a mesh that was not welded.
 pub(super) fn validate_distinct(points: &[Vec3]) -> Result<(), HullError> {
     // Adding zero turns -0 into 0.
     let bits = |(i, p): (usize, &Vec3)| ((*p + Vec3::ZERO).to_array().map(f32::to_bits), i);
@@ -60,7 +60,7 @@ pub(super) fn center_and_radius(
         let distances = points.iter().map(|p| (*p - from).length_squared());
         distances.fold(0.0, f64::max).sqrt()
     };
-    // Of a flat surface rounding chooses the sign.
+    // For a flat surface, rounding decides the sign.
     if volume < -MIN_EXTENT * farthest(origin).powi(3) {
         return Err(HullError::InsideOut);
     }
@@ -71,12 +71,11 @@ pub(super) fn center_and_radius(
     Ok((center, farthest(center)))
 }
 
-/// No edge is a dent, beyond rounding. For a closed surface in a single layer, convexity at every
-/// edge is convexity. The answer says which vertices belong to
-/// two triangles that are flat up to rounding.
+/// Refuses edges that are dents, beyond rounding. A closed surface in a single layer is convex if it is
+/// convex at every edge. Returns which vertices belong to two triangles that are flat up to rounding.
 ///
-/// A dent is as deep as the edge passes beneath the other diagonal of its two triangles. (Heights
-/// over the triangles' planes say nothing where these are slivers.)
+/// The depth of a dent is how far its edge passes beneath the other diagonal of its two triangles. (Heights
+/// over the planes of the triangles mean nothing if these are slivers.)
 pub(super) fn validate_convex(
     points: &[DVec3],
     mesh: &HalfEdgeMesh<'_>,
@@ -106,8 +105,8 @@ pub(super) fn validate_convex(
     Ok(at_flat_edge)
 }
 
-/// None of these faces has much of the hull before its plane. Each edge of a bowl is a dent within
-/// rounding, but many of them add up: the way up from the face leads to the rim.
+/// Refuses faces with much of the hull in front of their plane. Each edge of a bowl is a dent within
+/// rounding, but many of them add up: climbing from the face leads to the rim.
 pub(super) fn validate_no_bowl(
     climb: HillClimb<'_>,
     faces: &Faces,
@@ -124,12 +123,12 @@ pub(super) fn validate_no_bowl(
     Ok(())
 }
 
-/// The surface goes around the centre once: no triangle faces it, except where rounding turns a
-/// sliver, and a ray from it leaves but once.
+/// Refuses a surface that does not go around the centre exactly once: no triangle may face the centre, unless
+/// rounding turned a sliver, and a ray from the centre must leave only once.
 ///
-/// All edges of a fold may be convex, and all edges of two layers that end in each other. Hull
-/// builders working in f32 leave such on needles, whose cross-section they take for rounding; a
-/// climb would be trapped there far below the top.
+/// All edges of a fold may be convex, and so may be all edges of two connected layers. Hull builders that
+/// work in f32 leave such surfaces on needles, whose cross-section they mistake for rounding. A climb would
+/// be trapped there, far below the top.
 pub(super) fn validate_single_layer(
     points: &[DVec3],
     triangles: &[[u32; 3]],
@@ -143,7 +142,7 @@ pub(super) fn validate_single_layer(
         let is_sliver =
             || normal.length() <= MAX_INWARD_HEIGHT * radius * longest_side(points, triangle);
         let is_fold = normal.dot(a) < 0.0 && !is_sliver();
-        // The ray passes the sides on the left.
+        // The ray passes on the left of the sides.
         let passes = |from: DVec3, to: DVec3| from.cross(to).dot(TEST_RAY) > 0.0;
         crossings += u32::from(passes(a, b) && passes(b, c) && passes(c, a));
         if is_fold || crossings > 1 {
@@ -153,5 +152,5 @@ pub(super) fn validate_single_layer(
     Ok(())
 }
 
-/// None in which a hull is likely to have an edge.
+/// A direction in which a hull is unlikely to have an edge.
 const TEST_RAY: DVec3 = DVec3::new(0.267_3, -0.534_7, 0.801_7);
