@@ -1,6 +1,6 @@
 //! The greatest of many values, four at a time.
 //!
-//! There is no branch for each value, since which one is the greatest so far is not predictable.
+//! There is no branch per value, since it is not predictable which value is the greatest so far.
 
 use std::ops::BitAnd;
 
@@ -20,7 +20,7 @@ pub(crate) trait Lanes: Copy + Default + BitAnd<Output = Self> {
     fn greater_than(self, others: Self) -> Self;
     /// Lanes of `yes` where this mask is set, else of `no`.
     fn select(self, yes: Self, no: Self) -> Self;
-    /// The greatest of the values, and the id in its lane: in the lowest of lanes that tie.
+    /// The greatest of the values, and the id in its lane. In a tie the lowest lane wins.
     fn greatest(self, ids: Self) -> ArgMax<Self::Value>;
 }
 
@@ -48,7 +48,7 @@ impl Lanes for f64x4 {
         self.bitselect(yes, no)
     }
 
-    /// Compares lanes 0 and 2 with 1 and 3, then the two that are left: a shorter dependency chain than
+    /// Compares lanes 0 and 2 with 1 and 3, and then the two winners: this dependency chain is shorter than
     /// lane by lane.
     #[inline(always)]
     fn greatest(self, ids: Self) -> ArgMax<f64> {
@@ -106,22 +106,22 @@ impl Lanes for f32x4 {
     }
 }
 
-/// Keeps the greatest value of each lane, and chooses among them at the end: of values that tie, the one
-/// in the lowest lane, and within a lane the first.
+/// Keeps the greatest value of each lane, and chooses among these at the end. In a tie the lowest lane wins,
+/// and within a lane the first value.
 pub(crate) struct ArgMax4<V> {
     values: V,
-    /// What each value is of.
+    /// The id of each value.
     ids: V,
 }
 
-/// The greatest value, and what it is of.
+/// The greatest value, and its id.
 pub(crate) struct ArgMax<T> {
     pub id: usize,
     pub value: T,
 }
 
 impl<V: Lanes> ArgMax4<V> {
-    /// Of values above `least`. Where there are none it is this one, with the id 0.
+    /// Only values above `least` count. If there are none, the result is `least` with the id 0.
     #[inline(always)]
     pub fn new(least: V::Value) -> Self {
         Self {
@@ -135,7 +135,7 @@ impl<V: Lanes> ArgMax4<V> {
         self.replace(values.greater_than(self.values), values, ids);
     }
 
-    /// Only with the values in these lanes.
+    /// Only the values in these lanes count.
     #[inline(always)]
     pub fn update_where(&mut self, lanes: V, values: V, ids: V::Ids) {
         self.replace(values.greater_than(self.values) & lanes, values, ids);
@@ -168,7 +168,7 @@ impl ArgMaxDot {
         }
     }
 
-    /// Looks at four points, coordinate by coordinate, of which the first has this place.
+    /// Compares four points, given coordinate by coordinate. The first of them has this index.
     #[inline(always)]
     pub fn update(&mut self, place: usize, coordinates: [[f32; LANES]; 3]) {
         let [x, y, z] = coordinates;
@@ -178,7 +178,7 @@ impl ArgMaxDot {
         self.heights.update(heights, places);
     }
 
-    /// Its place among all that were looked at, and its height.
+    /// The index of the highest point, and its height.
     #[inline(always)]
     pub fn finish(self) -> ArgMax<f64> {
         self.heights.finish()

@@ -20,8 +20,8 @@ use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Support, VertexId};
 use crate::tolerance::{DEPTH_GAP, GJK_GAP_OF_DISTANCE, GJK_GAP_OF_SIZE, MIN_DIRECTED_DISTANCE};
 
-/// Convergence is finite, and even the adversarial families need far fewer iterations; the
-/// bound only guards against a stall that no other test sees.
+/// Convergence is finite, and even the adversarial families need far fewer iterations. This limit only guards
+/// against a stall that no other test detects.
 const MAX_ITERATIONS: usize = 256;
 
 /// The nearest points of two disjoint shapes, in frame 1.
@@ -44,17 +44,17 @@ pub struct Closest {
 /// How a GJK run ended.
 #[derive(Clone, Copy, Debug)]
 pub enum Outcome {
-    /// The shapes are farther apart than asked for.
+    /// The shapes are farther apart than the maximum distance.
     Separated(SeparatingAxis),
     /// The shapes are disjoint, this near.
     Disjoint(Closest),
-    /// Rounding ended the search: they may be this near, or overlap.
+    /// Rounding ended the search: the shapes may be this near, or overlap.
     Unsure(Closest),
     /// The shapes touch or overlap: the origin lies in this simplex, up to rounding.
     Overlapping(Simplex),
 }
 
-/// A direction along which the shapes are separated, as it is kept for the next frame.
+/// A direction along which the shapes are separated.
 #[derive(Clone, Copy, Debug)]
 pub struct SeparatingAxis {
     /// Unit direction from shape 1 to shape 2, in frame 1.
@@ -65,16 +65,16 @@ pub struct SeparatingAxis {
     pub ids: [VertexId; 2],
 }
 
-/// What a support pair along an axis shows.
+/// The result of a support pair along an axis.
 pub enum AxisTest {
-    /// The axis separates the shapes by more than was asked about.
+    /// The axis separates the shapes by more than the given distance.
     Separating(SeparatingAxis),
     /// It does not: this vertex is extreme along it, and a search can go on from there.
     Supporting(CsoVertex),
 }
 
-/// One support pair along a cached `axis` (unit, frame 1): is it still separating by more than
-/// `beyond`? The incremental part of separating-axis GJK.
+/// Whether a cached `axis` (unit, frame 1) still separates by more than `beyond`, by one support pair. This
+/// is the incremental part of separating-axis GJK.
 #[inline(always)]
 pub fn test_axis<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
@@ -85,8 +85,8 @@ pub fn test_axis<A: Support, B: Support>(
 ) -> AxisTest {
     debug_assert!(is_unit(axis), "no unit vector: {axis}");
     let (on_2, id_2) = cso.support_2(axis, start[1], cost);
-    // The bounding sphere of shape 1 may do: then none of its vertices is looked at. The axis may be longer
-    // than 1 by its rounding; half of 1 and its square is not less than its length.
+    // The bounding sphere of shape 1 may suffice: then none of its vertices is read. Rounding may make the
+    // axis longer than 1; the mean of 1 and its squared length is at least its length.
     let longest = 0.5 + 0.5 * axis.length_squared();
     let reach_1 = axis.dot(cso.shape_1.center()) + cso.shape_1.radius() * longest;
     let separation = axis.dot(on_2) - reach_1;
@@ -115,9 +115,9 @@ pub fn test_axis<A: Support, B: Support>(
     }
 }
 
-/// Distance and nearest points, starting from vertices of the Minkowski difference. Only the first three
-/// are used; there must be one. The nearer to the origin they lie, the fewer the iterations. Ends early,
-/// with a separating axis, when the distance is proved to exceed `max_distance`.
+/// Distance and nearest points, starting from vertices of the Minkowski difference. Only the first three are
+/// used; at least one is required. The nearer to the origin they lie, the fewer iterations are needed. Ends
+/// early, with a separating axis, once the distance is proved to exceed `max_distance`.
 // perf: answers and vectors that go through memory cost a tenth of a cold query.
 #[inline(always)]
 pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
@@ -129,7 +129,7 @@ pub fn distance<S: DistanceSubalgorithm, A: Support, B: Support>(
     distance_within::<S, A, B>(cso, start, max_distance, GJK_GAP_OF_SIZE, cost)
 }
 
-/// As [`distance`], with bounds that need not differ by less than `gap`, relative to the pair's size.
+/// Like [`distance`], but stops when the bounds differ by less than `gap`, relative to the pair's size.
 #[inline(always)]
 pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
@@ -192,8 +192,8 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
     ended(cso, closest(&simplex, &nearest, lower_bound))
 }
 
-/// A search that rounding ended: its answer is good if the bounds meet nearly enough. With a nearly flat
-/// simplex they need not, and the direction of its nearest point may be any.
+/// The outcome of a search that rounding ended. Its answer is good if the bounds are close enough. With a
+/// nearly flat simplex they may not be, and the direction of the nearest point may be arbitrary.
 fn ended<A: Support, B: Support>(cso: &Cso<'_, A, B>, closest: Closest) -> Outcome {
     let promised = DEPTH_GAP * cso.min_radius() + MIN_DIRECTED_DISTANCE * cso.size();
     if closest.distance - closest.lower_bound <= promised {
@@ -203,11 +203,11 @@ fn ended<A: Support, B: Support>(cso: &Cso<'_, A, B>, closest: Closest) -> Outco
     }
 }
 
-/// In the first iterations the direction turns so far that a table knows a nearer vertex than the
-/// one found last.
+/// In the first iterations the direction turns so far that the start table has a better vertex than the last
+/// one found.
 const TABLE_START_ITERATIONS: usize = 4;
 
-/// Where the climbs of an iteration begin.
+/// The start vertices for the climbs of an iteration.
 #[inline]
 pub(crate) fn climb_start<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,

@@ -1,4 +1,4 @@
-//! Ids of the parts of a shape, with a type for each kind: a face is not taken for a vertex.
+//! Ids of the parts of a shape. Each kind has its own type, so that a face cannot be mistaken for a vertex.
 
 use std::fmt;
 

@@ -1,9 +1,9 @@
 //! A coherent narrow phase for the convex hulls of [rapier](https://rapier.rs) worlds.
 //!
-//! [`IsaGjkDispatcher`] answers pairs with a convex hull, starting from what the previous frame
-//! knew about them, and passes every other pair on to parry's own dispatcher. It is installed in
-//! one line. Plain `SharedShape::convex_hull` colliders need no change; a [`HullShape`] carries
-//! its prepared hull along, so that no table is searched for it, and finds its own bounding box.
+//! [`IsaGjkDispatcher`] answers pairs with a convex hull, starting from the previous frame, and passes every
+//! other pair on to parry's own dispatcher. It is installed in one line. Plain `SharedShape::convex_hull`
+//! colliders need no change. A [`HullShape`] contains its prepared hull, so that no cache is searched for it,
+//! and computes its own bounding box.
 //!
 //! # Quick start
 //!
@@ -99,14 +99,14 @@ pub use parry::dispatcher::IsaGjkDispatcher;
 pub use parry::hull_shape::{HullShape, PreparedShapes};
 pub use stats::{Left, Stage, Stats};
 
-/// All that a user of a physics world needs.
+/// Everything that a user of a physics world needs.
 pub mod prelude {
     pub use crate::{
         Hull, HullError, HullShape, IsaGjkDispatcher, Left, PreparedShapes, Stage, Stats,
     };
 }
 
-/// What tests and benches of the kernels use. It promises nothing, and may change with any version.
+/// Kernels, for this crate's tests and benches only. They may change with any version.
 #[doc(hidden)]
 pub mod internals {
     pub mod epa {

@@ -13,7 +13,7 @@ pub struct RelativePose {
     translation: DVec3,
 }
 
-/// A finite pose whose quaternion has a direction.
+/// A finite pose whose quaternion is not zero.
 #[derive(Clone, Copy)]
 pub(crate) struct ValidPose<'a>(&'a Pose);
 
@@ -27,7 +27,7 @@ impl<'a> ValidPose<'a> {
     }
 }
 
-// Built in place: copying it out of an `Option` would cost a stall of the store buffer in every query.
+// Built in place: copying it out of an `Option` would stall every query on store forwarding.
 impl From<ValidPose<'_>> for RelativePose {
     #[inline(always)]
     fn from(ValidPose(pos12): ValidPose<'_>) -> Self {
@@ -40,10 +40,10 @@ impl From<ValidPose<'_>> for RelativePose {
     }
 }
 
-/// What makes a unit of something that is about one, by its length squared.
+/// The factor that normalises something of about unit length, from its squared length.
 ///
-/// One Newton step of the reciprocal root; a root and a division would be the longest dependency of a
-/// whole separated query. Off by 3/8 of the excess squared.
+/// This is one Newton step of the reciprocal root. A root and a division would be the longest dependency
+/// chain of a separated query. The error is 3/8 of the squared excess.
 #[inline(always)]
 pub(crate) fn unit_scale(length_squared: f64) -> f64 {
     let excess = length_squared - 1.0;
@@ -54,15 +54,15 @@ pub(crate) fn unit_scale(length_squared: f64) -> f64 {
     }
 }
 
-/// For assertions: a unit vector up to the rounding of f32, or what is not finite anyway.
+/// Whether this is a unit vector up to the rounding of f32, or not finite. For assertions.
 pub(crate) fn is_unit(direction: DVec3) -> bool {
     let excess = direction.length_squared() - 1.0;
     excess.abs() < 2.0 * NEARLY_UNIT || !excess.is_finite()
 }
 
 impl RelativePose {
-    /// From an f32 pose of shape 2 in frame 1; its quaternion is normalised here, in f64. `None` if the
-    /// pose is not finite, or its quaternion has no direction.
+    /// From an f32 pose of shape 2 in frame 1. Its quaternion is normalised in f64. `None` if the pose is not
+    /// finite, or its quaternion is zero.
     pub fn new(pos12: &Pose) -> Option<Self> {
         ValidPose::new(pos12).map(Self::from)
     }
@@ -77,7 +77,7 @@ impl RelativePose {
         }
     }
 
-    /// The pose of shape 2 after it moved `by` so much, in frame 1.
+    /// The pose of shape 2 after a translation `by` a vector in frame 1.
     #[inline]
     pub(crate) fn moved(&self, by: DVec3) -> Self {
         Self {

@@ -17,16 +17,16 @@ use crate::stats::Cost;
 use crate::support::{Cso, Support};
 use crate::tolerance::RAY_TOUCHING;
 
-/// A ray that grazes a smooth shape halves its distance with each iteration, and is done after
-/// forty; the bound only guards against a stall that no other test sees.
+/// A ray that grazes a smooth shape halves its distance in each iteration and takes forty. This limit only
+/// guards against a stall that no other test detects.
 const MAX_ITERATIONS: usize = 256;
 
-/// What a moving shape meets.
+/// The result of a ray cast.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RayCast {
-    /// Nothing within the time asked about (or the input was not finite).
+    /// There is no contact within the maximum time, or the input is not finite.
     Miss,
-    /// It touches.
+    /// The moving shape touches the other.
     Hit(Impact),
     /// The shapes overlap, or are within the target distance, from the beginning.
     Overlap,
@@ -35,8 +35,8 @@ pub enum RayCast {
 /// The first contact of a moving shape; vectors in frame 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Impact {
-    /// When: no earlier contact is possible, and now the shapes are within the target distance,
-    /// up to [`RAY_TOUCHING`].
+    /// The time of impact: no earlier contact is possible, and at this time the shapes are within the target
+    /// distance, up to [`RAY_TOUCHING`].
     pub time: f64,
     /// Unit direction from shape 1 to shape 2.
     pub normal: DVec3,
@@ -46,9 +46,9 @@ pub struct Impact {
     pub on_2: DVec3,
 }
 
-/// When shape 2, moving by `velocity` relative to shape 1 (in frame 1) without turning, first
-/// comes within `target_distance` of shape 1. Both that and `max_time` may not be negative; an
-/// infinite time is fine.
+/// Finds when shape 2, moving by `velocity` relative to shape 1 (in frame 1) without turning, first comes
+/// within `target_distance` of shape 1. Neither `target_distance` nor `max_time` may be negative; `max_time`
+/// may be infinite.
 pub fn ray_cast<S: DistanceSubalgorithm, A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     velocity: DVec3,
@@ -67,7 +67,7 @@ pub fn ray_cast<S: DistanceSubalgorithm, A: Support, B: Support>(
     let mut simplex = Simplex::default();
     simplex.push(start);
     let mut ids = start.ids;
-    // The simplex's point nearest to that of the ray, relative to it.
+    // The point of the simplex nearest to the point of the ray, relative to the latter.
     let mut nearest = simplex.nearest::<S>(ray.point());
     for iteration in 0..MAX_ITERATIONS {
         cost.iterations += 1;
@@ -91,20 +91,20 @@ pub fn ray_cast<S: DistanceSubalgorithm, A: Support, B: Support>(
             simplex.push(vertex);
         }
         let next = simplex.nearest::<S>(ray.point());
-        // Without progress the nearest point is as near as rounding lets it come, and no plane
-        // separates it: this is the impact.
+        // Without progress, the nearest point is as near as rounding allows, and no plane separates it: this
+        // is the impact.
         if !advanced && (known || next.point.length_squared() >= norm * norm) {
             return ray.impact(&simplex, &nearest);
         }
         simplex.keep(next.face);
         nearest = next;
     }
-    // Too early a contact is better than none.
+    // A contact that is too early is better than none.
     cost.fallbacks += 1;
     ray.impact(&simplex, &nearest)
 }
 
-/// The point that marches along the ray.
+/// The point that moves along the ray.
 struct Ray {
     velocity: DVec3,
     target_distance: f64,
@@ -114,13 +114,13 @@ struct Ray {
     separating: Option<DVec3>,
 }
 
-/// What a support plane does to the point of the ray.
+/// How a support plane advances the point of the ray.
 enum Advance {
-    /// It separated; the point now is on it.
+    /// The plane separated, and the point is on it now.
     Advanced,
-    /// It does not separate.
+    /// The plane does not separate.
     NoProgress,
-    /// It separates, and the ray does not lead through it.
+    /// The plane separates, and the ray never crosses it.
     Diverges,
 }
 
@@ -133,7 +133,7 @@ impl Ray {
         RAY_TOUCHING * (self.size + self.point().length())
     }
 
-    /// Moves on to the support plane through `vertex`, whose inward normal is `direction`.
+    /// Advances to the support plane through `vertex` with the inward normal `direction`.
     fn advance(&mut self, direction: DVec3, vertex: DVec3) -> Advance {
         let separation = direction.dot(vertex - self.point()) - self.target_distance;
         if separation <= 0.0 {
@@ -141,7 +141,7 @@ impl Ray {
         }
         let approach = direction.dot(self.velocity);
         let time = self.time + separation / approach;
-        // Also for NaN, and for a plane so slant that it is never reached.
+        // This also holds for NaN, and for a plane so slanted that it is never reached.
         if !(approach > 0.0 && time.is_finite()) {
             return Advance::Diverges;
         }

@@ -5,7 +5,7 @@ use std::ops::{Add, Sub};
 use glam::{DVec3, Vec3};
 pub(crate) use wide::{f32x4, f32x8, f64x2, f64x4, u32x4, u64x4};
 
-/// How many values are looked at together: most faces have no more corners.
+/// How many values are processed together. Most faces have no more corners than this.
 pub(crate) const LANES: usize = 4;
 
 /// The bits of all lanes.
@@ -16,7 +16,7 @@ pub(crate) const ALL: u32 = (1 << LANES) - 1;
 pub(crate) struct DVec3x4(pub [f64x4; 3]);
 
 impl DVec3x4 {
-    /// The places of four things.
+    /// The positions of four items.
     #[inline(always)]
     pub fn gather<T>([a, b, c, d]: [T; 4], place: impl Fn(T) -> DVec3) -> Self {
         let [a, b, c, d] = [place(a), place(b), place(c), place(d)];

@@ -1,4 +1,4 @@
-//! Counters of which stage answered, and at what cost: they show whether coherence pays.
+//! Counters of which stages answered, and at what cost. They show whether coherence pays.
 
 use std::fmt;
 use std::sync::Arc;
@@ -9,20 +9,21 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 #[repr(u8)]
 #[non_exhaustive]
 pub enum Stage {
-    /// The bounding spheres are apart, or that of a hull is above a half-space.
+    /// The bounding spheres are apart, or the bounding sphere of a hull is above a half-space.
     BoundingSpheres,
-    /// One or two support pairs proved separation: along the axis of the previous frame (the line
-    /// of centres, for a new pair), or along one tilted from it.
+    /// One or two support pairs proved separation, along the axis of the previous frame (for a new pair, the
+    /// line of centres) or along a tilted one.
     Axis,
     /// The features of the previous frame, re-evaluated, certified the distance or depth, and the contacts
-    /// stayed on their places.
+    /// kept their places.
     Kept,
     /// The features of the previous frame, re-evaluated, certified separation, distance or depth; or a
     /// hull's lowest vertex over a half-space, with or without a previous frame, gave them.
     Feature,
-    /// Features near the previous ones, or near that axis, did: walked to from facet to facet.
+    /// Other features certified it. They were found by walking from facet to facet, from the previous
+    /// features or axis.
     FacetWalk,
-    /// Such features, with the polytope of a previous frame re-evaluated, certified a depth.
+    /// Features and the polytope of a previous frame, re-evaluated, certified a depth.
     CachedPolytope,
     /// GJK started from the previous frame's axis and vertices.
     WarmGjk,
@@ -35,7 +36,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// How many stages there are.
+    /// The number of stages.
     pub const COUNT: usize = 10;
     /// All stages, in the order of [`Stats::answered`].
     pub const ALL: [Self; Self::COUNT] = [
@@ -74,19 +75,19 @@ impl Stage {
 #[non_exhaustive]
 pub enum Left {
     /// A plain hull that cannot be prepared: parry's builder made it flat or not convex, it has fewer than
-    /// four points or too many, or a coordinate is not finite. [`HullShape`](crate::HullShape) names the
+    /// four points or too many, or a coordinate is not finite. [`HullShape`](crate::HullShape) reports the
     /// reason.
     HullNotPrepared,
-    /// The other shape is not one of those that we answer, or is degenerate.
+    /// The other shape is not supported, or is degenerate.
     OtherShape,
-    /// A cylinder or a cone that is near: parry's routine finds the contacts on our hull.
+    /// A cylinder or a cone is near: parry's routine finds its contacts with our hull.
     CurvedContact,
     /// The relative pose is not finite.
     NotFinite,
 }
 
 impl Left {
-    /// How many reasons there are.
+    /// The number of reasons.
     pub const COUNT: usize = 4;
     /// All reasons, in the order of [`Stats::left_to_fallback`].
     pub const ALL: [Self; Self::COUNT] = [
@@ -107,7 +108,7 @@ impl Left {
     }
 }
 
-/// What the queries of one dispatcher have cost so far.
+/// The cost of all queries of one dispatcher so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Stats {
@@ -122,8 +123,8 @@ pub struct Stats {
     pub supports: u64,
     /// Moves of hill climbing from a vertex to a better neighbour.
     pub climb_moves: u64,
-    /// Queries that ended by a safeguard (stall, iteration bound, degenerate input) and
-    /// returned their best certified answer.
+    /// Queries that were ended by a safeguard (stall, iteration limit, degenerate input) and returned their
+    /// best certified answer.
     pub fallbacks: u64,
 }
 
@@ -150,7 +151,7 @@ fn differences<const N: usize>(now: [u64; N], before: [u64; N]) -> [u64; N] {
     std::array::from_fn(|i| now[i].saturating_sub(before[i]))
 }
 
-/// The cost of one query, filled in while it runs.
+/// The cost of one query, added up while it runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
     /// GJK iterations and EPA expansions.
@@ -163,7 +164,7 @@ pub struct Cost {
     pub fallbacks: u32,
 }
 
-/// One thread's share of the counters, on cache lines of its own.
+/// One thread's counters, on separate cache lines.
 #[derive(Default)]
 #[repr(align(128))]
 struct Shard {
@@ -175,8 +176,8 @@ struct Shard {
     fallbacks: AtomicU64,
 }
 
-/// More shards than threads that step one world. Threads take them in turn as they are started, in all
-/// pools of the process; two that share one may lose counts, never correctness.
+/// More shards than threads that step one world. Threads of all pools of the process take them in turn as
+/// they start. Two threads that share a shard may lose counts, but nothing else.
 const SHARDS: usize = 64;
 
 /// Counters that many threads add to without waiting for each other.
@@ -239,8 +240,7 @@ impl SharedStats {
     }
 }
 
-/// A plain load and store: a locked addition costs more than a climb does, and a shard has one
-/// writer.
+/// A plain load and store: a locked addition costs more than a climb, and a shard has one writer.
 #[inline]
 fn add(counter: &AtomicU64, count: u32) {
     counter.store(

@@ -1,4 +1,4 @@
-//! What the kernels see of a shape: extreme points with vertex ids, and of a polytope its faces.
+//! Shapes as the kernels see them: extreme points with vertex ids, and the faces of polytopes.
 
 use std::cmp::Ordering;
 use std::iter;
@@ -12,17 +12,17 @@ pub use crate::ids::{EdgeId, FaceId, VertexId};
 
 /// A convex shape as its support mapping, in its own frame.
 pub trait Support {
-    /// A point that is extreme in direction `dir` (any length), and its vertex.
+    /// A point that is extreme in direction `dir` (of any length), and its vertex.
     ///
-    /// `start` is where to begin the search, usually the answer of a similar query. A bad choice costs
-    /// time, never accuracy.
+    /// `start` is the vertex where the search begins, usually the answer of a similar query. A bad choice
+    /// costs time, never accuracy.
     ///
     /// # Panics
     ///
     /// May panic if the shape has no vertex `start`: see [`clamp_vertex`](Self::clamp_vertex).
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId);
 
-    /// The greatest `dir · p` over the shape, whatever is wrong with it: of a surface that rounding has dented
+    /// The greatest `dir · p` over the shape. This is exact even on a surface that rounding has dented, where
     /// [`support`](Self::support) may find a vertex that is only nearly extreme.
     #[inline]
     fn extent(&self, dir: DVec3) -> f64 {
@@ -31,19 +31,19 @@ pub trait Support {
         dir.dot(extreme)
     }
 
-    /// A start for [`support`](Self::support) when no similar query is known.
+    /// A start vertex for [`support`](Self::support) if no similar query is known.
     #[inline]
     fn start_vertex(&self, _dir: DVec3) -> VertexId {
         VertexId::default()
     }
 
-    /// `vertex` if the shape has it, else some vertex that it has.
+    /// `vertex` if the shape has it, and some other vertex if not.
     #[inline]
     fn clamp_vertex(&self, _vertex: VertexId) -> VertexId {
         VertexId::default()
     }
 
-    /// A point inside, off the boundary wherever the shape has volume.
+    /// A point inside, and not on the boundary if the shape has volume.
     #[inline]
     fn center(&self) -> DVec3 {
         DVec3::ZERO
@@ -60,16 +60,16 @@ impl<T: ExactSizeIterator<Item = DVec3> + DoubleEndedIterator + Clone> FacePoint
 
 /// A convex polytope: a support mapping with faces and edges around it.
 ///
-/// Its methods may panic for vertices and faces that it does not have ([`has_face`](Self::has_face)).
-/// For edges they check.
+/// The methods may panic for vertices and faces that do not exist ([`has_face`](Self::has_face)). Edges are
+/// checked.
 pub trait Polytope: Support {
     /// The position of a vertex.
     fn vertex(&self, vertex: VertexId) -> DVec3;
 
-    /// The vertices that share an edge with a vertex. Some may occur more than once.
+    /// The neighbours of a vertex along edges. Some may occur more than once.
     fn neighbors(&self, vertex: VertexId) -> impl Iterator<Item = VertexId>;
 
-    /// The same in fours.
+    /// The neighbours, four at a time.
     #[inline]
     fn neighbors_in_fours(&self, vertex: VertexId) -> impl Iterator<Item = [VertexId; 4]> {
         let mut neighbors = self.neighbors(vertex);
@@ -80,11 +80,11 @@ pub trait Polytope: Support {
         })
     }
 
-    /// Whether there is such a face.
+    /// Whether the face exists.
     fn has_face(&self, face: FaceId) -> bool;
 
-    /// The outward unit normal of a face; zero for a sliver that has no plane of the shape, and
-    /// for the one face of a point or a segment.
+    /// The outward unit normal of a face. It is zero for a sliver, whose plane is unreliable, and for the
+    /// only face of a point or a segment.
     fn face_normal(&self, face: FaceId) -> DVec3;
 
     /// The largest `normal · p` over the shape.
@@ -109,11 +109,10 @@ pub trait Polytope: Support {
         (0..self.face_len(face)).map(move |i| self.vertex(self.face_vertex(face, i)))
     }
 
-    /// The face at `vertex` that looks most in direction `dir`.
+    /// The face at `vertex` whose normal is nearest to `dir`.
     fn face_at_vertex(&self, vertex: VertexId, dir: DVec3) -> FaceId;
 
-    /// Of the faces on both sides of an edge, the one that looks most in
-    /// direction `dir`; some face if there is no such edge.
+    /// The face at an edge whose normal is nearest to `dir`; some face if there is no such edge.
     fn face_at_edge(&self, edge: EdgeId, dir: DVec3) -> FaceId;
 
     /// The id of the edge between two neighbouring vertices.
@@ -125,9 +124,9 @@ pub trait Polytope: Support {
         self.edge_between(self.face_vertex(face, i), self.face_vertex(face, next))
     }
 
-    /// If a face has neighbours that lie nearly in its plane: the id of a convex polygon around
-    /// them all, which `face_len`, `face_vertex` and `face_edge` know though it is no face; and
-    /// the faces under it.
+    /// The cluster of a face, if it has neighbours that lie nearly in its plane: the id of a convex outline
+    /// around them all, and the faces under the outline. `face_len`, `face_vertex` and `face_edge` take this
+    /// id, although it is not a face.
     fn cluster(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
         let _ = face;
         None
@@ -137,7 +136,8 @@ pub trait Polytope: Support {
     fn edge_ends(&self, edge: EdgeId) -> Option<[VertexId; 2]>;
 }
 
-/// A vertex of the Minkowski difference: its position and where it comes from (frame 1).
+/// A vertex of the Minkowski difference: its position, and the vertices that it is the difference of (frame
+/// 1).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct CsoVertex {
     /// `on_1 - on_2`.
@@ -156,19 +156,19 @@ impl CsoVertex {
     }
 }
 
-/// The Minkowski difference of shape 1 and shape 2 (the configuration space obstacle), never
-/// built, only asked for extreme points. All in frame 1.
+/// The Minkowski difference of shape 1 and shape 2 (the configuration space obstacle). It is never built, and
+/// only its extreme points are computed. Everything is in frame 1.
 pub struct Cso<'a, A, B> {
     /// Shape 1.
     pub shape_1: &'a A,
     /// Shape 2.
     pub shape_2: &'a B,
-    /// Where shape 2 is.
+    /// The pose of shape 2.
     pub pose: &'a RelativePose,
 }
 
 impl<A: Support, B: Support> Cso<'_, A, B> {
-    /// A point that is extreme in direction `dir`, the two climbs starting at `start`.
+    /// A point that is extreme in direction `dir`. The two climbs begin at `start`.
     #[inline(always)]
     pub fn support(&self, dir: DVec3, start: [VertexId; 2], cost: &mut Cost) -> CsoVertex {
         let (on_1, id_1) = self.shape_1.support(dir, start[0], cost);
@@ -180,7 +180,7 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
         }
     }
 
-    /// The point of shape 2 of which the difference is extreme in direction `dir`, in frame 1.
+    /// The point of shape 2 that makes the difference extreme in direction `dir`, in frame 1.
     #[inline(always)]
     pub fn support_2(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
         let dir = -self.pose.direction_to_2(dir);
@@ -203,7 +203,7 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
         }
     }
 
-    /// Start vertices for direction `dir` when nothing is known.
+    /// Start vertices for direction `dir` if no similar query is known.
     pub fn start_vertices(&self, dir: DVec3) -> [VertexId; 2] {
         [
             self.shape_1.start_vertex(dir),
@@ -211,15 +211,15 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
         ]
     }
 
-    /// The extreme vertex from the centre towards the origin, where the shapes are nearest if they
-    /// are round: the first vertex of a search that knows nothing.
+    /// The extreme vertex from the centre towards the origin: the first vertex of a cold search. If the
+    /// shapes are round, they are nearest there.
     pub fn vertex_towards_origin(&self, cost: &mut Cost) -> CsoVertex {
         let dir = self.towards_origin();
         self.support(dir, self.start_vertices(dir), cost)
     }
 
-    /// The unit direction from the centre to the origin, which is that from the centre of shape 1 to
-    /// that of shape 2; some direction where these coincide.
+    /// The unit direction from the centre to the origin, that is, from the centre of shape 1 to the centre of
+    /// shape 2; some direction if these coincide.
     pub fn towards_origin(&self) -> DVec3 {
         (-self.center()).normalize_or(DVec3::X)
     }
@@ -239,8 +239,8 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
         self.shape_1.center() - self.pose.point_to_1(self.shape_2.center())
     }
 
-    /// The line of centres, and by how much the bounding spheres are apart along it, if that
-    /// is more than `beyond`.
+    /// The direction between the centres and the distance of the bounding spheres, if that is more than
+    /// `beyond`.
     #[inline(always)]
     pub fn spheres_apart(&self, beyond: f64) -> Option<(DVec3, f64)> {
         self.are_spheres_apart(beyond).then(|| {
@@ -258,13 +258,13 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
         reach >= 0.0 && squared.partial_cmp(&(reach * reach)) == Some(Ordering::Greater)
     }
 
-    /// The length that tolerances of the whole pair are relative to.
+    /// The length to which tolerances of the whole pair are relative.
     #[inline]
     pub fn size(&self) -> f64 {
         self.shape_1.radius() + self.shape_2.radius()
     }
 
-    /// The length that tolerances must not exceed if the smaller shape is to keep its accuracy.
+    /// The length to which tolerances are relative where the accuracy of the smaller shape matters.
     #[inline]
     pub fn min_radius(&self) -> f64 {
         self.shape_1.radius().min(self.shape_2.radius())

@@ -10,24 +10,24 @@
 const COS_1_DEGREE: f64 = 0.999_847_7;
 const SIN_1_DEGREE: f64 = 0.017_452_4;
 
-/// A face is a set of hull triangles that deviate from one plane by at most this share of the
-/// hull's radius. Ten f32 roundings: flat caps become one polygon, and what a face certifies is
-/// wrong by no more than this.
+/// A face is a set of hull triangles that deviate from one plane by at most this share of the hull's radius.
+/// This is ten f32 roundings: flat caps become one polygon, and the error of what a face certifies is at most
+/// this.
 pub const FACE_FLATNESS: f64 = 6e-7;
 
-/// Neighbouring triangles are only joined to a face when their normals are within 1 degree
-/// (cosine), so that slivers of arbitrary direction cannot chain a face around a corner.
+/// Neighbouring triangles are merged into a face only if their normals are within 1 degree (cosine), so that
+/// slivers of arbitrary direction cannot continue a face around a corner.
 pub const FACE_ANGLE_COS: f64 = COS_1_DEGREE;
 
-/// Faces within 1 degree (cosine) of a larger one around which they lie form a face cluster with it:
-/// contacts are sought on all of them together. Distances are measured to the faces themselves, so
-/// that the angle decides only how many corners are looked at; f32 rounding and scanning noise
-/// stay below it, and the facets of round hulls of a thousand vertices above.
+/// Faces around a larger one form a face cluster with it if their normals are within 1 degree (cosine):
+/// contacts are sought on all of them together. Distances are measured to the faces themselves, so the angle
+/// decides only how many corners are examined. f32 rounding and scanning noise stay below it, and the facets
+/// of round hulls of a thousand vertices above.
 pub const CLUSTER_ANGLE_COS: f64 = COS_1_DEGREE;
 
-/// Faces and clusters are sought only over edges that bend by less than 4 degrees (cosine). No others
-/// can be inside of one: the normal of a triangle is within 1 degree of its face's, and that within
-/// 1 degree of its cluster's.
+/// Faces and clusters grow only over edges that bend by less than 4 degrees (cosine). No other edge can be
+/// inside one: the normal of a triangle is within 1 degree of its face's, and that is within 1 degree of its
+/// cluster's.
 pub const NEARLY_FLAT_COS: f64 = 0.997_564;
 
 /// A triangle lower than this share of the radius is a sliver: rounding of its corners can turn
@@ -38,75 +38,76 @@ pub const MIN_TRIANGLE_HEIGHT: f64 = 4e-6;
 /// may lose more than the depth of its dents.
 pub const MAX_DENT: f64 = 1e-6;
 
-/// How far (relative to the radius) a hull may reach beyond the plane of a face: many dents in a row
+/// How far (relative to the radius) a hull may reach beyond the plane of a face, since many dents in a row
 /// make a bowl. The noise of scanned plates stays below it.
 pub const BOWL: f64 = 5e-5;
 
-/// What a climb may lose (relative to the radius) on a surface with such a bowl. Along a direction tilted
-/// by twice the slope of its sides, which is twice its depth over half its width, the rim opposite the top
-/// is just a summit, lower by that tilt over the whole width.
+/// What a climb may lose (relative to the radius) on a surface with such a bowl. Its sides slope by twice its
+/// depth over half its width. In a direction tilted by twice that slope, the rim opposite the top is just a
+/// summit, lower than the top by the tilt times the whole width.
 pub const BOWL_LOSS: f64 = 8.0 * BOWL;
 
-/// Where a surface bends at an edge by less than this share of the radius, its two triangles may as well
-/// have the other diagonal: twice what a dent may be deep.
+/// If a surface bends at an edge by less than this share of the radius, its two triangles could as well have
+/// the other diagonal. This is twice the depth of a dent.
 pub const FLAT_EDGE: f64 = 2e-6;
 
-/// The corners of a flat side are within this share of the radius of one plane: then each of its
-/// diagonals is a [`FLAT_EDGE`].
+/// The corners of a flat side are at most this share of the radius from one plane. Then each of its diagonals
+/// is a [`FLAT_EDGE`].
 pub const FLAT_SIDE: f64 = FLAT_EDGE / 8.0;
 
-/// Where two flat sides meet, any two triangles of them bend by more than this share of the radius: then
-/// the edge between them is no [`FLAT_EDGE`].
+/// Where two flat sides meet, any two of their triangles bend by more than this share of the radius. Then the
+/// edge between them is no [`FLAT_EDGE`].
 pub const BENT_EDGE: f64 = 2.0 * FLAT_EDGE;
 
-/// A triangle lower than this share of the radius may face inwards by the rounding of its corners;
-/// a higher one that does is a fold of the surface. Ten f32 roundings.
+/// A triangle lower than this share of the radius may face inwards because its corners are rounded. A higher
+/// triangle that faces inwards is a fold of the surface. This is ten f32 roundings.
 pub const MAX_INWARD_HEIGHT: f64 = 6e-7;
 
 /// A hull whose smallest extent is below this share of its radius has no usable interior.
 pub const MIN_EXTENT: f64 = 1e-6;
 
-/// The determinant that tells on which side of a plane a point lies is off, in f64, by less than this share
-/// of the sum of its products: nine roundings of at most seven. Nearer to zero, the exact sum decides.
+/// The f64 error of the determinant that decides on which side of a plane a point lies, as a share of the sum
+/// of its products: nine roundings where at most seven occur. Nearer to zero, the exact sum decides.
 pub const ORIENTATION_ROUNDING: f64 = 1e-15;
 
 /// Two support values closer than this share of `radius * |direction|` tie for hill climbing:
 /// vertices that are coplanar up to f32 rounding must be seen as one plateau.
 pub const SUPPORT_TIE: f64 = 4e-7;
 
-/// An edge shorter than this share of the radius may rise or fall by its ends' rounding alone, as
-/// steeply as anything that is climbed.
+/// An edge shorter than this share of the radius may rise or fall by the rounding of its ends alone, as
+/// steeply as any edge that is climbed.
 pub const SHORT_EDGE: f64 = 1e-2;
 
 /// The way up from a false summit may begin with a step down by this share of `radius * |direction|`:
 /// a vertex is beneath its neighbours by no more than a few dents.
 pub const DIP: f64 = 4.0 * MAX_DENT;
 
-/// GJK stops when its bounds of the distance differ by less than this share of the distance...
+/// GJK stops when its bounds on the distance differ by less than this share of the distance...
 pub const GJK_GAP_OF_DISTANCE: f64 = 1e-9;
 
 /// ...or by less than this share of the pair's size: the rounding of f64 sums of coordinates.
 pub const GJK_GAP_OF_SIZE: f64 = 1e-12;
 
-/// ...or, in scene queries of cylinders and cones, by less than this share of it: a tenth of the promised
-/// accuracy. A search on a polytope ends at its vertices; one on a curved surface goes on and on.
+/// ...or, in scene queries of cylinders and cones, by less than this share of the size: a tenth of the
+/// promised accuracy. A search on a polytope ends at its vertices, but one on a curved surface does not end
+/// by itself.
 pub const GJK_CURVED_GAP: f64 = 1e-6;
 
-/// A distance below this share of the pair's size has no reliable direction; the penetration
-/// search, which works on planes, answers instead. Shapes this near touch, for every query: rounding in
-/// f64 is far less, and one step of f32 far more.
+/// A distance below this share of the pair's size has no reliable direction. The penetration search, which
+/// works on planes, answers instead. For every query, shapes this near touch: rounding in f64 is far less,
+/// and one step of f32 far more.
 pub const MIN_DIRECTED_DISTANCE: f64 = 1e-10;
 
 /// Proved bounds are widened by this share of the pair's size and offset: the rounding of a few f64 sums and
 /// products of coordinates.
 pub const BOUNDS_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// A penetration depth is certified when upper and lower bound differ by less than this share
-/// of the smaller shape's radius: a tenth of the promised accuracy.
+/// A penetration depth is certified if its upper and lower bound differ by less than this share of the
+/// smaller shape's radius: a tenth of the promised accuracy.
 pub const DEPTH_GAP: f64 = 1e-6;
 
-/// How much f32 may be off about how far a point is inside of a face, as a share of how far it and the
-/// corners are from each other and from the origin: a dozen roundings.
+/// The f32 error of how far a point is inside a face, as a share of how far it and the corners are from each
+/// other and from the origin: a dozen roundings.
 pub const INSET_ROUNDING: f64 = 1e-6;
 
 /// How far (relative to the smaller radius) shapes are moved apart to find the witness points of their
@@ -118,40 +119,39 @@ pub const WITNESS_GAP: f64 = 1e-2;
 /// initial polytope: 1e5 roundings of f64, far below anything f32 input can resolve.
 pub const DEGENERATE: f64 = 1e-11;
 
-/// Visibility of a polytope face from a new point, relative to the pair's size: coplanar
-/// faces count as visible, so that they are replaced together and no sliver is left.
+/// A new point sees a polytope face unless it is lower than this below its plane, relative to the pair's
+/// size. So coplanar faces count as visible, are replaced together, and leave no sliver.
 pub const COPLANAR: f64 = 1e-14;
 
-/// What was normalised in f32, a quaternion or a normal, has a squared length this near to 1. One step
-/// of Newton's method then normalises it up to 3/8 of the square of the excess: 4e-13 at this limit, and
-/// 1e-14 for usual input.
+/// A quaternion or normal that was normalised in f32 has a squared length this near to 1. One Newton step
+/// then normalises it up to 3/8 of the squared excess: 4e-13 at this limit, and 1e-14 for usual input.
 pub const NEARLY_UNIT: f64 = 1e-6;
 
 /// Edges whose directions span less than this sine squared do not define a contact normal.
 pub const PARALLEL_EDGES: f64 = 1e-8;
 
-/// A ray cast has arrived when it is this near, relative to the pair's size and the way
-/// travelled (whose coordinates carry the rounding). The square root of f64's roundoff: a nearer
-/// nearest point, a sum of coordinates, has no direction that could move the ray on.
+/// A ray cast has arrived if it is this near, relative to the pair's size and the way travelled (whose
+/// coordinates are rounded). This is the square root of f64's roundoff: a nearest point is a sum of
+/// coordinates, and a nearer one has no reliable direction in which the ray could advance.
 pub const RAY_TOUCHING: f64 = 1e-8;
 
-/// A motion whose share against a contact normal is below this is along the contact: normals and
-/// velocities given in f32, and turned from frame to frame, are off by a few roundings.
+/// A motion counts as tangential if its share against the contact normal is below this: normals and
+/// velocities that are given in f32 and turned from frame to frame are off by a few roundings.
 pub const GRAZING: f64 = 1e-6;
 
-/// Contacts keep their places while the normal turns by less than 1 degree (cosine) from one update to
-/// the next: a greater turn means that other features have come into contact.
+/// Contacts keep their places while the normal turns by less than 1 degree (cosine) from one update to the
+/// next. A larger turn means that other features came into contact.
 pub const KEPT_ANGLE_COS: f64 = COS_1_DEGREE;
 
-/// Contacts keep their places while their two points are apart, across the normal, by less than this
-/// share of the smaller shape's radius. Heaps of small bodies rest for anything from 1 % on; what
-/// slides or rolls takes its contacts along in steps of this size.
+/// Contacts keep their places while the distance of their two points across the normal is less than this
+/// share of the smaller shape's radius. Heaps of small bodies rest for any value from 1 % on. The contacts of
+/// sliding or rolling bodies move in steps of this size.
 pub const KEPT_DRIFT: f64 = 2e-2;
 
-/// The deepest of the contacts that keep their places is reported at the query's depth. By this share of
-/// the smaller shape's radius, the promised accuracy, it may lie above the deepest place of all: corners tie up
-/// to the tilt of a body at rest, and must not take turns. Beyond it, a corner without a contact has
-/// become the deepest, and the contacts are chosen anew.
+/// The deepest of the kept contacts is reported at the query's depth. It may lie above the deepest place by
+/// this share of the smaller shape's radius, which is the promised accuracy: corners tie up to the tilt of a
+/// body at rest, and must not take turns. Beyond this, a corner without a contact has become the deepest, and
+/// the contacts are chosen anew.
 pub const KEPT_DEPTH: f64 = 2e-5;
 
 /// A feature of a `HullShape` answers for directions within 1 degree of its normals, as in parry.
@@ -159,60 +159,62 @@ pub(crate) const FEATURE_ANGLE_COS: f64 = COS_1_DEGREE;
 /// The same limit as a sine, for the slope of an edge.
 pub(crate) const FEATURE_ANGLE_SIN: f64 = SIN_1_DEGREE;
 
-/// Where the sine of a triangle's widest corner is below this, its normal has lost half of its digits.
-/// The nearest point is then chosen among all faces by distance, not by the signs of areas. Half of the
-/// digits balances the loss of trusting the normal against that of ignoring the interior.
+/// If the sine of a triangle's widest corner is below this, its normal has lost half of its digits. The
+/// nearest point is then chosen among all faces by distance, not by the signs of areas. At half of the
+/// digits, trusting the normal and ignoring the interior lose equally much.
 pub(crate) const MIN_TRIANGLE_SINE: f64 = 1e-8;
 
-/// Where the ratio of a tetrahedron's volume to the product of three edges at a corner is below this, the
-/// outer sides of its faces have lost half of their digits. All faces are then tried.
+/// If the ratio of a tetrahedron's volume to the product of three edges at a corner is below this, the
+/// volumes that decide on which side of its faces the origin lies have lost half of their digits. Then all
+/// faces are tried.
 pub(crate) const MIN_VOLUME_RATIO: f64 = 1e-8;
 
 /// The weights of a tetrahedron must reproduce the origin up to this share of a vertex's distance from
 /// it. Otherwise the faces are tried. It is above the rounding of all but nearly flat tetrahedra.
 pub(crate) const INTERIOR_RESIDUAL: f64 = 1e-12;
 
-/// Johnson's answer may miss the true distance by this share of the farthest vertex's distance. Beyond
-/// it, the backup procedure answers. The determinants of a nearly flat simplex are mere rounding and
-/// satisfy the halt condition by chance; a good answer's rounding is far below this.
+/// Johnson's answer may miss the true distance by this share of the farthest vertex's distance. Beyond it,
+/// the backup procedure answers. The determinants of a nearly flat simplex are mere rounding, and satisfy the
+/// halt condition by chance; the rounding of a good answer is far below this.
 pub(crate) const JOHNSON_ERROR: f64 = 1e-10;
 
-/// A cached polytope proves a depth with this share of the tolerance of a search. The rest is far beyond
-/// rounding, so a search would find what a polytope proves, whatever is stored or lost.
+/// A cached polytope proves depths up to this share of the search's tolerance. The rest is far more than
+/// rounding, so a search would find the depth that a polytope proves: answers do not depend on what is
+/// cached.
 pub(crate) const PROOF_MARGIN: f64 = 0.999;
 
-/// Two heights computed in f32 may be in the wrong order by this much, for points in the unit ball and a
-/// direction whose largest coordinate is 1. Coordinates, direction, products and two sums are rounded,
-/// each by at most a unit of the sum of the products, which is below √3. So both heights together are
-/// off by 10 √3 units, and their difference by one more.
+/// Two heights computed in f32 are in the right order if they differ by more than this, for points in the
+/// unit ball and a direction whose largest coordinate is 1. Coordinates, direction, products and two sums are
+/// rounded, each by at most a unit of the sum of the products, which is below √3. So both heights together
+/// are off by 10 √3 units, and their difference by one more.
 pub(crate) const SCAN_ROUNDING: f32 = 20.0 / (1 << 24) as f32;
 
-/// A corner of the contact patch is as deep as the witness up to this share of the smaller shape's
-/// radius: the rounding of f32 face planes.
+/// A corner of the contact patch counts as deep as the witness if their depths differ by less than this share
+/// of the smaller shape's radius: the rounding of f32 face planes.
 pub(crate) const SAME_DEPTH: f64 = 2e-6;
 
-/// What lies outside an edge of a clip polygon by less than this share of the edge's extent, and of its
-/// distance from the origin of the contact plane, counts as inside: four roundings of the coordinates.
-/// So corners that meet up to rounding are never lost.
+/// A point counts as inside an edge of a clip polygon if it is outside by less than this share of the edge's
+/// extent, and of its distance from the origin of the contact plane: four roundings of the coordinates. So
+/// corners that meet up to rounding are never lost.
 pub(crate) const CLIP_SLACK: f32 = 4.0 * f32::EPSILON;
 
-/// A point that is inside or outside of a polygon's side by this many slacks is so for the sides beside it
-/// as well, whichever of them rounding chose.
+/// If a point is inside or outside a polygon's side by this many slacks, it is so for the adjacent sides as
+/// well, whichever of them rounding chose.
 pub(crate) const CLEARLY_BESIDE: f32 = 4.0;
 
-/// A box without thickness gets this share of its largest half-extent as one, a hundredth of the promised
-/// accuracy. Its side faces then have normals.
+/// A box without thickness gets this share of its largest half-extent as its thickness, so that its side
+/// faces have normals. This is a hundredth of the promised accuracy.
 pub(crate) const MIN_BOX_THICKNESS: f64 = 1e-7;
 
-/// A correction of a unit normal by less than this in each coordinate is only rounding.
+/// A correction of a unit normal by less than this in each coordinate is mere rounding.
 pub(crate) const UNCORRECTED: f32 = 1e-6;
 
-/// The promise: distances and depths of solids are right up to this share of the larger radius, which is
-/// 1e-5 of the diameter of the larger bounding sphere.
+/// The promised accuracy: distances and depths of solids are right up to this share of the larger radius,
+/// which is 1e-5 of the diameter of the larger bounding sphere.
 pub(crate) const PROMISED_ERROR: f64 = 2e-5;
 
-/// What the stages of one answer may add up to, as shares of the larger radius. The table in
-/// `docs/theory.md` says where each comes from. GJK's gap is left out: it is 1e-9 of the distance.
+/// The sum of the errors of all stages of one answer, as shares of the larger radius. The table in
+/// `docs/theory.md` explains each. GJK's gap is left out: it is 1e-9 of the distance.
 pub(crate) const WORST_ERROR: f64 = POSE_ERROR
     + CLIMB_ERROR
     + FACE_ERROR
@@ -221,22 +223,22 @@ pub(crate) const WORST_ERROR: f64 = POSE_ERROR
     + SAME_DEPTH
     + OUTPUT_ERROR;
 
-/// A normalised quaternion is off by 3/8 of the excess squared, and a rotation by twice that.
+/// A normalised quaternion is off by 3/8 of the squared excess, and a rotation by twice that.
 const POSE_ERROR: f64 = NEARLY_UNIT * NEARLY_UNIT;
-/// What a climb may lose, on each shape: four plateaus on dented hulls, two dents on long needles.
+/// What a climb may lose on each shape: four plateaus on dented hulls, two dents on long needles.
 const CLIMB_ERROR: f64 = 2.0
     * if 2.0 * SUPPORT_TIE > MAX_DENT {
         4.0 * SUPPORT_TIE
     } else {
         2.0 * MAX_DENT
     };
-/// The corners of a face lie beneath its plane; a face of each shape.
+/// The corners of a face may lie beneath its plane, on each shape.
 const FACE_ERROR: f64 = 2.0 * FACE_FLATNESS;
 /// The origin may project beside the facet.
 const PROJECTION_ERROR: f64 = DEPTH_GAP;
 /// A depth is certified within one gap, and the facet at hand is preferred within another.
 const DEPTH_ERROR: f64 = 2.0 * DEPTH_GAP;
-/// Depths, which are at most two radii, are rounded to f32 by half a unit.
+/// Depths are at most two radii and rounded to f32 by half a unit.
 const OUTPUT_ERROR: f64 = f32::EPSILON as f64;
 
 const _: () = assert!(
@@ -244,13 +246,13 @@ const _: () = assert!(
     "the errors add up to more than the promise"
 );
 
-/// No pair is scaled up beyond this radius for parry's searches: the squares of longer coordinates are more
-/// than f32 holds.
+/// Pairs are scaled up to at most this radius for parry's searches: the squares of longer coordinates
+/// overflow f32.
 pub const LARGEST_SCALED: f64 = 1e15;
 
-/// Cores of capsules nearer than this share of the pair's size meet: the direction between their nearest
-/// points is rounding only.
+/// Cores of capsules that are nearer than this share of the pair's size meet: the direction between their
+/// nearest points is mere rounding.
 pub const CAPSULE_TOUCH: f64 = 1e-12;
 
-/// Gaps that differ by less than this share of the radii are the same: the promised accuracy of a contact.
+/// Gaps that differ by less than this share of the radii count as equal: the promised accuracy of a contact.
 pub const SAME_GAP: f64 = 1e-5;

@@ -5,8 +5,8 @@ use glam::DVec3;
 use crate::simplex::{DistanceSubalgorithm, Nearest};
 use crate::support::CsoVertex;
 
-/// At most four vertices of the Minkowski difference, each in a slot of its own: dropping one is
-/// clearing a bit, and a vertex that was added on trial leaves the others where they were.
+/// At most four vertices of the Minkowski difference, each in its own slot. Dropping a vertex clears a bit,
+/// and adding one leaves the others where they are.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Simplex {
     slots: [CsoVertex; 4],
@@ -30,8 +30,8 @@ impl Simplex {
         self.vertices().any(|v| v.w == vertex.w)
     }
 
-    /// Puts a vertex into the lowest free slot. There is one: a full simplex holds the point that is
-    /// sought, and ends the loop.
+    /// Puts a vertex into the lowest free slot. There always is one: a full simplex contains the point that
+    /// is sought, and ends the loop.
     pub(crate) fn push(&mut self, vertex: CsoVertex) {
         let slot = self.occupied.trailing_ones() as usize;
         debug_assert!(slot < 4, "a full simplex");

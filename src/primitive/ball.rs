@@ -5,8 +5,8 @@ use glam::DVec3;
 use crate::stats::Cost;
 use crate::support::{EdgeId, FaceId, Polytope, Support, VertexId};
 
-/// The core of a ball around its origin: that one point. The radius is a border, to be taken off
-/// the distance of the cores.
+/// The core of a ball around its origin: a point. The radius is a border, which is subtracted from the
+/// distance of the cores.
 #[derive(Clone, Copy, Debug)]
 pub struct Ball {
     radius: f64,
@@ -31,14 +31,14 @@ impl Support for Ball {
         (DVec3::ZERO, VertexId::default())
     }
 
-    /// The border's: a point has no length that a tolerance could be relative to.
+    /// The radius of the border: a point has no length to which a tolerance could be relative.
     #[inline]
     fn radius(&self) -> f64 {
         self.radius
     }
 }
 
-/// The core: one vertex, which is a face without a plane.
+/// The core: one vertex, which is also a face without a plane.
 impl Polytope for Ball {
     #[inline]
     fn vertex(&self, _: VertexId) -> DVec3 {

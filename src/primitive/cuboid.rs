@@ -127,7 +127,7 @@ impl Polytope for CuboidPolytope {
     #[inline]
     fn face_at_edge(&self, edge: EdgeId, dir: DVec3) -> FaceId {
         let [from, to] = self.edge_ends(edge).unwrap_or_default();
-        // Of the three faces at an end, the edge has those that do not cut across it.
+        // Of the three faces at an end, the edge belongs to the two that are not square to it.
         let along = (from.index() ^ to.index()).trailing_zeros().min(2);
         let mut across = dir;
         across[along as usize] = if from.index() >> along & 1 == 1 {

@@ -1,8 +1,8 @@
-//! Shapes too small for tables: boxes and triangles, as hulls meet them, and smooth ones.
+//! Shapes that need no tables: boxes and triangles, and smooth shapes.
 //!
-//! Balls and capsules are a core, a point or a segment, with a border around it: kernels work on
-//! the cores, and the borders' widths are taken off the distance. So a round surface is exact, and
-//! only where the *cores* overlap is there a depth to search for.
+//! Balls and capsules are a core (a point or a segment) with a border around it: kernels work on the cores,
+//! and the widths of the borders are subtracted from the distance. So round surfaces are exact, and a depth
+//! need be searched for only if the *cores* overlap.
 
 mod ball;
 mod cone;

@@ -9,8 +9,8 @@ pub(super) struct Rim {
 }
 
 impl Rim {
-    /// The extreme point of the disc at some `height`, and how far it reaches along the part of
-    /// `dir` that is square to the axis. Along the axis the whole disc ties: then its centre.
+    /// The extreme point of the disc at some `height`, and how far the disc reaches along the part of `dir`
+    /// that is square to the axis. Along the axis the whole disc ties, and the point is its centre.
     #[inline]
     pub fn support(&self, dir: DVec3, height: f64) -> (DVec3, f64) {
         // `hypot`, so that directions of any length keep their direction.

@@ -5,8 +5,8 @@ use glam::DVec3;
 use crate::stats::Cost;
 use crate::support::{EdgeId, FaceId, Polytope, Support, VertexId};
 
-/// The core of a capsule: the segment along its axis. The radius is a border, to be taken off
-/// the distance of the cores. The ids 0 and 1 name the ends.
+/// The core of a capsule: the segment along its axis. The radius is a border, which is subtracted from the
+/// distance of the cores. The ends have the ids 0 and 1.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment {
     ends: [DVec3; 2],
@@ -34,7 +34,7 @@ impl Support for Segment {
         cost.supports += 1;
         let [a, b] = self.ends;
         let along = dir.dot(b - a);
-        // Where both ends tie it stays: a resting capsule does not swap them.
+        // If both ends tie, it stays: a resting capsule does not swap them.
         let end = match along {
             _ if along > 0.0 => VertexId::new(1),
             _ if along < 0.0 => VertexId::new(0),
@@ -53,14 +53,14 @@ impl Support for Segment {
         self.ends[0].midpoint(self.ends[1])
     }
 
-    /// With the border: the core alone may be a point, without any length.
+    /// Includes the border: the core alone may be a point, which has no length.
     #[inline]
     fn radius(&self) -> f64 {
         0.5 * self.ends[0].distance(self.ends[1]) + self.border_radius
     }
 }
 
-/// The core: one edge, which is a face without a plane.
+/// The core: one edge, which is also a face without a plane.
 impl Polytope for Segment {
     #[inline]
     fn vertex(&self, vertex: VertexId) -> DVec3 {

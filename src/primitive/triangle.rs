@@ -15,7 +15,7 @@ pub struct TrianglePolytope {
 }
 
 impl TrianglePolytope {
-    /// A triangle with these corners; `None` if they are on a line or not finite.
+    /// A triangle with these corners; `None` if they lie on a line or are not finite.
     pub fn new(vertices: [DVec3; 3]) -> Option<Self> {
         let [a, b, c] = vertices;
         let normal = (b - a).cross(c - a).try_normalize()?;

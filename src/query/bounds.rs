@@ -2,34 +2,33 @@
 
 use glam::DVec3;
 
-/// How far two shapes are apart, or how deep they overlap, from below and from above, with what proves both.
+/// Lower and upper bounds on how far two shapes are apart, or how deep they overlap, with proofs of both.
 ///
 /// The *signed distance* is the distance of shapes that are apart, and minus the least translation that
 /// separates shapes that overlap. It is between `lower` and `upper`. Everything is in frame 1, that of the
 /// first shape. Make one with [`SeparationBounds::between`].
 ///
-/// For shapes that overlap, `normal` is the direction in which shape 2 leaves shape 1 on the shortest way:
-/// moved by `-lower` along it, shape 2 is outside. This proves the depth from above, and `certificate` proves
-/// it from below.
+/// For shapes that overlap, `normal` is the direction of the shortest way out: moved by `-lower` along it,
+/// shape 2 is outside shape 1. This proves an upper bound of the depth, and `certificate` proves a lower one.
 #[derive(Clone, Debug)]
 pub struct SeparationBounds {
-    /// The signed distance is no less: all of shape 1 is below the first of `planes`, all of shape 2 is
-    /// above the second one, and this is how far the second plane is above the first.
+    /// The lower bound of the signed distance. All of shape 1 is below the first of `planes`, all of shape 2
+    /// is above the second, and this is how far the second plane is above the first.
     pub lower: f64,
-    /// The signed distance is no more, by the `certificate`.
+    /// The upper bound of the signed distance, proved by `certificate`.
     pub upper: f64,
     /// The unit normal of the planes, from shape 1 to shape 2.
     pub normal: DVec3,
-    /// `normal · p` of the points of both planes.
+    /// The value of `normal · p` on each plane.
     pub planes: [f64; 2],
-    /// What proves the upper bound.
+    /// The proof of the upper bound.
     pub certificate: Certificate,
     /// The sum of the widths of the shapes' rounded borders. A ball is a point with a border, and a capsule
-    /// is a segment with one. The certificate is about the shapes without their borders.
+    /// is a segment with one. The certificate refers to the shapes without their borders.
     pub border: f64,
 }
 
-/// Why a signed distance is no more than it is said to be.
+/// The proof of an upper bound of a signed distance.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub enum Certificate {
@@ -40,6 +39,6 @@ pub enum Certificate {
     /// point of shape 1 and a point of shape 2, without their borders, written as `[p, q]`. The triangles
     /// form a closed surface around the origin, counter-clockwise seen from outside, and none of them is
     /// nearer to it than `-(upper + border)`. So the ball of this radius is in the difference, and shape 2
-    /// must go at least so far, in any direction, to leave shape 1.
+    /// must move at least that far, in any direction, to leave shape 1.
     Surface(Vec<[[DVec3; 2]; 3]>),
 }

@@ -1,29 +1,31 @@
-//! What identifies a contact from frame to frame.
+//! Ids of contacts that last from frame to frame.
 
 use super::feature::{FACE, Feature, KIND, VERTEX};
 use crate::map_pair::map_pair;
 use crate::simd::u32x4;
 
-/// Which contact of a pair this is: the features of both shapes that meet there, in the order of the shapes.
+/// The id of a contact within its pair: the features of both shapes that meet there, in the order of the
+/// shapes.
 ///
-/// It depends on the shapes and their poses only, and stays the same from frame to frame while the same
-/// features meet. A vertex on a face is that vertex, whichever of the faces it slides over: so the contacts
-/// of a sliding box keep their ids on a triangulated floor. Ids are those of the contacts' features in
-/// rapier's manifolds ([`ContactId::of`]), and this is how impulses find their contacts from step to step.
+/// It depends only on the shapes and their poses, and stays the same from frame to frame while the same
+/// features meet. The id of a vertex on a face is that vertex, whichever face it slides over, so the contacts
+/// of a sliding box keep their ids on a triangulated floor. [`ContactId::of`] reads the ids of contacts in
+/// rapier's manifolds. Impulses find their contacts from step to step by these ids.
 ///
-/// Ids differ within one patch, but mean nothing from pair to pair.
+/// Ids are unique within one patch, but not between pairs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ContactId([u32; 2]);
 
 impl ContactId {
-    /// Where these features meet.
+    /// The id of the contact where these features meet.
     pub fn new(features: [Feature; 2]) -> Self {
         let codes = features.map(|feature| u32x4::splat(feature.code()));
         Self(contact_keys(codes).map(|key| key.to_array()[0]))
     }
 }
 
-/// The ids of four contacts at once, by the codes of both shapes' features. With a vertex, any face will do.
+/// The ids of four contacts at once, from the codes of both shapes' features. Against a vertex, all faces are
+/// the same.
 // perf: in a call the lanes go through memory.
 #[inline(always)]
 pub(crate) fn contact_keys([a, b]: [u32x4; 2]) -> [u32x4; 2] {

@@ -1,18 +1,18 @@
-//! Why a query about two shapes has no answer.
+//! Errors of queries.
 
 use std::error::Error;
 use std::fmt;
 
-/// Why there is no answer about two shapes.
+/// Why a query has no answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum QueryError {
     /// Neither shape is a hull: a `ConvexPolyhedron`, a `RoundConvexPolyhedron` or a
-    /// [`HullShape`](crate::HullShape). Shapes with parts are to be asked about part by part.
+    /// [`HullShape`](crate::HullShape). Query shapes with parts part by part.
     NoHull,
-    /// The shape beside the hull is not one that this query knows, or is degenerate.
+    /// The other shape is unknown to this query, or degenerate.
     OtherShape,
-    /// A plain hull is flat, not convex, too large or not finite. [`HullShape`](crate::HullShape) names the
+    /// A plain hull is flat, not convex, too large or not finite. [`HullShape`](crate::HullShape) reports the
     /// reason.
     HullNotPrepared,
     /// The relative pose or the prediction distance is not finite, or too large to compute with.

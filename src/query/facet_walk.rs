@@ -1,4 +1,4 @@
-//! From facet to facet of the Minkowski difference, to where the origin projects into one.
+//! Walks from facet to facet of the Minkowski difference, until the origin projects into one.
 
 use std::ops::ControlFlow;
 
@@ -14,27 +14,27 @@ use crate::map_pair::map_pair;
 use crate::stats::Stage;
 use crate::support::{Polytope, VertexId};
 
-/// A contact rolls over to the next facet or the one after, on hulls of a thousand vertices over some
-/// more; one that is not found by then is not near, or the nearest point is no facet's, and GJK finds it
-/// in fewer steps.
+/// A contact rolls on by a facet or two, or by a few more on hulls of a thousand vertices. If the walk takes
+/// longer, the right facet is far away, or the nearest point lies on no facet, and GJK finds it in fewer
+/// steps.
 const MAX_WALK: usize = 10;
 
-/// On the way from facet to facet.
+/// The state of a walk.
 struct FacetWalk {
-    /// The features that span the facet to look at.
+    /// The features that span the current facet.
     features: [Feature; 2],
-    /// Where to look if these span no plane.
+    /// The direction in which to look if these span no plane.
     normal: DVec3,
-    /// The side that was crossed last.
+    /// The last side that was crossed.
     crossed: Option<[[VertexId; 2]; 2]>,
     steps_left: usize,
-    /// What an answer by this facet counts as.
+    /// The stage to report if this facet answers.
     stage: Stage,
-    /// What answers by GJK and EPA count as.
+    /// Whether GJK and EPA count as warm or cold.
     from: Start,
 }
 
-/// The facet to look at next, if there is one, and the ends of where it was looked for.
+/// The next facet, if there is one, and the ends of the side across which it was sought.
 type NextFacet = (Option<[Feature; 2]>, [[VertexId; 2]; 2]);
 
 impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
@@ -45,8 +45,8 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         facet::certify(self.cso, features, max, tolerance, self.cost)
     }
 
-    /// Answers by the facet of a contact that is remembered, if the `verdict` on it allows that, or goes
-    /// on from there.
+    /// Answers with the facet of a remembered contact if its `verdict` allows that, and otherwise walks on
+    /// from there.
     pub(super) fn start_walk_from_features(
         &mut self,
         normal: DVec3,
@@ -96,7 +96,8 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
     }
 
-    /// Answers by the facet at hand, or by GJK and EPA where the way ends; else goes to the next facet.
+    /// Answers with the current facet, or with GJK and EPA where the walk ends. Otherwise goes to the next
+    /// facet.
     #[inline(always)]
     fn step(&mut self, verdict: &Verdict, walk: &mut FacetWalk) -> ControlFlow<Found> {
         let (next, ends) = match verdict {
@@ -137,11 +138,11 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         ControlFlow::Continue(())
     }
 
-    /// Over a side, unless that leads back.
+    /// Crosses a side, unless that leads back.
     #[inline(always)]
     fn cross_edge(&mut self, side: &FacetEdge, walk: &mut FacetWalk) -> NextFacet {
         let [from, to] = side.ends;
-        // A facet that has its face of shape 2 goes around the other way.
+        // The corners of a facet with a face of shape 2 turn the other way.
         let back = walk.crossed == Some([to, from]) || walk.crossed == Some([from, to]);
         walk.crossed = Some(side.ends);
         let across = (!back)
@@ -153,9 +154,9 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
     }
 
-    /// Where the way over a side leads back. Two edges may span no facet at these poses, and any plane
-    /// then: they are left by the vertex that is extreme along `normal`. Else the nearest point lies on the
-    /// side.
+    /// Handles a side across which the walk leads back. At these poses two edges may span no facet, but some
+    /// arbitrary plane: then the walk restarts at the vertex that is extreme along `normal`. Otherwise the
+    /// nearest point lies on the side.
     fn leave_facet(
         &mut self,
         features: [Feature; 2],
@@ -172,7 +173,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         (None, side.ends)
     }
 
-    /// To a facet at the vertex that is extreme along `normal`.
+    /// Goes to a facet at the vertex that is extreme along `normal`.
     fn restart_at(&mut self, normal: DVec3, start: [VertexId; 2]) -> NextFacet {
         let vertex = self.cso.support(normal, start, self.cost);
         (

@@ -1,5 +1,5 @@
-//! Parts of a polytope's boundary. The kinds of features are told apart here; the stages of a query work
-//! with their vertices and faces.
+//! Features: parts of a polytope's boundary. Their kinds are told apart here; the stages of a query work with
+//! their vertices and faces.
 
 use crate::support::{Cso, CsoVertex, EdgeId, FaceId, Polytope, VertexId};
 use glam::DVec3;
@@ -37,7 +37,7 @@ impl Feature {
         kind | id
     }
 
-    /// The feature with a code, if that is of one of the three kinds.
+    /// The feature with a code, if the code is of one of the three kinds.
     #[inline]
     pub(crate) fn from_code(code: u32) -> Option<Self> {
         let id = code & !KIND;
@@ -70,8 +70,8 @@ impl Feature {
         }
     }
 
-    /// How many corners the feature has, and these, of which the last may be repeated. Of a larger face some
-    /// that are spread around it.
+    /// The corners of the feature, the last of which may be repeated, and their number. For a larger face,
+    /// some corners spread around it.
     pub(super) fn corners(self, shape: &impl Polytope) -> ([VertexId; CORNERS], usize) {
         match self {
             Self::Vertex(vertex) => ([vertex; CORNERS], 1),
@@ -92,7 +92,7 @@ impl Feature {
         }
     }
 
-    /// The face itself, or that of the faces around a vertex or an edge that looks most in direction `dir`.
+    /// The face itself, or the face around a vertex or an edge whose normal is nearest to `dir`.
     #[inline]
     pub(crate) fn face(self, shape: &impl Polytope, dir: DVec3) -> FaceId {
         match self {
@@ -102,7 +102,7 @@ impl Feature {
         }
     }
 
-    /// The `i`-th side of a polygon: an edge, or its first corner where it cuts across faces.
+    /// The `i`-th side of a polygon: an edge, or its first corner if the side cuts across faces.
     #[inline]
     pub(crate) fn of_side(shape: &impl Polytope, polygon: FaceId, i: usize) -> Self {
         match shape.face_edge(polygon, i) {
@@ -111,7 +111,7 @@ impl Feature {
         }
     }
 
-    /// What vertices span. `outward` is a direction away from the shape.
+    /// The feature that vertices span. `outward` points away from the shape.
     fn spanned(
         shape: &impl Polytope,
         mut vertices: impl Iterator<Item = VertexId>,

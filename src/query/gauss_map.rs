@@ -1,10 +1,9 @@
-//! From a facet of the Minkowski difference to the one across a side, without building either.
+//! From a facet of the Minkowski difference to the adjacent one, without building either.
 //!
-//! A side of a facet is an edge of one shape at a vertex of the other. Turned about the edge, from
-//! the facet's normal to that of the face beyond the edge, the normal either arrives, and the face
-//! and the vertex span the next facet; or on its way an edge at the vertex comes level, and the
-//! two edges do. (On the sphere of normals: an arc of the one shape followed until it leaves the
-//! vertex's region of the other.)
+//! A side of a facet is an edge of one shape at a vertex of the other. Turn the facet's normal about the
+//! edge, towards the normal of the face beyond it. Either it arrives there, and the face and the vertex span
+//! the next facet; or an edge at the vertex comes level on the way, and the two edges span it. (On the sphere
+//! of normals: follow an arc of one shape until it leaves the region of the other shape's vertex.)
 
 use glam::DVec3;
 
@@ -16,8 +15,8 @@ use crate::pose::RelativePose;
 use crate::simd::{DVec3x4, f64x4, u64x4};
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 
-/// The features of the facet across `side`. They are a proposal, to be certified. `None` where
-/// the side is not one of an edge and a vertex.
+/// The features of the facet across `side`. They are a proposal and still need to be certified. `None` if the
+/// side is not an edge at a vertex.
 pub(super) fn adjacent_facet<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     side: &FacetEdge,
@@ -38,15 +37,15 @@ pub(super) fn adjacent_facet<A: Polytope, B: Polytope>(
         edge: [from_2, to_2],
         vertex: from_1,
     };
-    // As shape 2 sees it: what looks away from shape 1 for the one looks inwards for the other.
+    // As shape 2 sees it: an outward direction of shape 1 points into shape 2.
     let seen = map_pair([normal, outward], |dir| -cso.pose.direction_to_2(dir));
     let pose = cso.pose.inverse();
     let [feature_2, feature_1] = pair.next(cso.shape_2, cso.shape_1, &pose, seen)?;
     Some([feature_1, feature_2])
 }
 
-/// The features of a facet at `vertex`, which is extreme along `normal`: turned to where the origin
-/// is, the normal comes to the first edge around the vertex, and along it to a facet.
+/// The features of a facet at `vertex`, which is extreme along `normal`. The normal is turned towards the
+/// origin until it meets the first edge around the vertex, and then along that edge to a facet.
 pub(super) fn facet_at_vertex<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     vertex: &CsoVertex,
@@ -75,8 +74,8 @@ pub(super) fn facet_at_vertex<A: Polytope, B: Polytope>(
     adjacent_facet(cso, &side)
 }
 
-/// Of the edges at a vertex of `p` that which comes level first when the normal is turned to the side:
-/// minus the tangent of the angle, and the vertex at its other end. Minus infinity if none does.
+/// The edge at a vertex of `p` that comes level first when the normal is turned sideways: minus the tangent
+/// of the angle, and the vertex at its other end. The value is negative infinity if no edge does.
 #[inline(always)]
 fn first_edge_crossed<P: Polytope>(
     p: &P,
@@ -93,7 +92,7 @@ fn first_edge_crossed<P: Polytope>(
     first.finish()
 }
 
-/// The edges at a vertex, and the vertices at their other ends, in fours.
+/// The edges at a vertex in fours, and the vertices at their other ends.
 #[inline(always)]
 fn edges<P: Polytope>(p: &P, vertex: VertexId) -> impl Iterator<Item = (u64x4, DVec3x4)> {
     let corner = p.vertex(vertex);
@@ -110,9 +109,8 @@ struct EdgeVertexPair {
 }
 
 impl EdgeVertexPair {
-    /// The features of `p` and `q` that span the next facet. `normal` and `outward`, in the frame
-    /// of `p`, are the present facet's outward normal and the direction in its plane beyond the
-    /// edge.
+    /// The features of `p` and `q` that span the next facet. `normal` and `outward`, in the frame of `p`, are
+    /// the outward normal of the present facet, and the direction in its plane across the edge.
     fn next<P: Polytope, Q: Polytope>(
         &self,
         p: &P,
@@ -127,7 +125,7 @@ impl EdgeVertexPair {
             return None; // no plane to turn to
         }
         let [first, last] = map_pair([normal, beyond], |n| -q_pose.direction_to_2(n));
-        // The way from the one normal to the other goes from 0 to 1. Minus that to where the first edge
+        // The way between the normals is measured from 0 to 1. This is minus the way to where the first edge
         // comes level:
         let mut nearest = ArgMax4::new(-1.0);
         for (ends, edges) in edges(q, self.vertex) {
@@ -167,14 +165,14 @@ pub(super) mod tests {
         DVec3::new(x, y, z).normalize()
     }
 
-    /// Turned anyhow, and up to `far` away.
+    /// With any rotation, and up to `far` away.
     pub fn random_pose(far: f64, rng: &mut oorandom::Rand64) -> RelativePose {
         let turn = direction(rng) * 6.0 * rng.rand_float();
         let away = direction(rng) * far * rng.rand_float();
         RelativePose::new(&Pose::new(away.as_vec3(), turn.as_vec3())).expect("a finite pose")
     }
 
-    /// Of all vertices of the difference, how far the outermost is beyond the plane of `features`.
+    /// How far the outermost vertex of the difference is beyond the plane of `features`.
     fn excess(cso: &Cso<'_, Hull, Hull>, features: [Feature; 2], normal: DVec3) -> f64 {
         let [v1, v2] = vertices(cso, features);
         let outermost = cso.support(normal, [v1, v2], &mut Cost::default()).w;
@@ -182,8 +180,7 @@ pub(super) mod tests {
         normal.dot(outermost - corner)
     }
 
-    /// From the facets that a turned direction meets first, over all of their sides: each proposal
-    /// is a facet of the difference, and has the edge that was crossed.
+    /// Each step, from the first facet at a vertex on, proposes another facet of the difference.
     #[test]
     fn the_walk_goes_from_facet_to_facet() {
         let mut rng = oorandom::Rand64::new(7);

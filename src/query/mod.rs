@@ -1,17 +1,17 @@
-//! The coherent query: from what the previous frame knew, the cheapest stage that can *prove*
-//! its answer gives it.
+//! The coherent query: starting from the previous frame, the cheapest stage that can *prove* its answer gives
+//! it.
 //!
 //! 1. [`Stage::BoundingSpheres`]: the bounding spheres are apart.
 //! 2. [`Stage::Axis`]: one support pair along the previous axis still separates.
 //! 3. [`Stage::Feature`]: the previous nearest features still prove distance or depth.
-//! 4. [`Stage::FacetWalk`]: features next to them do.
-//! 5. [`Stage::CachedPolytope`]: those features do, with the polytope of the previous expansion.
+//! 4. [`Stage::FacetWalk`]: features next to them prove it.
+//! 5. [`Stage::CachedPolytope`]: those features prove it, together with the polytope of the previous
+//!    expansion.
 //! 6. [`Stage::WarmGjk`]: incremental GJK from the previous axis and vertices.
 //! 7. [`Stage::WarmEpa`]: the depth, expanded from the previous features.
 //!
-//! A pair without a previous frame starts with the line of centres as its axis; GJK and EPA count
-//! as cold for it. A stale or wrong memory costs time, never accuracy: nothing is believed that is not
-//! re-evaluated at the present poses.
+//! A pair without a previous frame starts with the line of centres as its axis, and its GJK and EPA count as
+//! cold. A stale or wrong memory costs time, never accuracy: everything is re-evaluated at the present poses.
 //!
 //! [`Stage::BoundingSpheres`]: crate::stats::Stage::BoundingSpheres
 //! [`Stage::Axis`]: crate::stats::Stage::Axis
@@ -62,17 +62,17 @@ pub struct Query<'a, 'c, A, B> {
     pub cso: &'a Cso<'c, A, B>,
     /// Answers beyond this distance are [`Answer::Separated`].
     pub max_distance: f64,
-    /// Polytopes of earlier expansions, and the pair's key among them. They save work where a deep
-    /// pair is asked about in every frame, and change no bit of an answer.
+    /// Polytopes of earlier expansions, and the key of this pair. They save work for a deep pair that is
+    /// queried in every frame, and never change an answer.
     pub polytope_cache: Option<(&'a mut PolytopeCache, u64)>,
     /// Memory for the expanding polytope.
     pub scratch: &'a mut EpaScratch,
-    /// Filled in with what the query cost.
+    /// The cost of the query is added here.
     pub cost: &'a mut Cost,
 }
 
 impl<'a, 'c, A: Support, B: Support> Query<'a, 'c, A, B> {
-    /// Whether two shapes are farther apart than `max_distance`, or else how far, or how deep they overlap.
+    /// A query for how far apart two shapes are, up to `max_distance`, or how deep they overlap.
     pub fn new(
         cso: &'a Cso<'c, A, B>,
         max_distance: f64,

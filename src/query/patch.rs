@@ -1,12 +1,12 @@
-//! The whole of a contact.
+//! The whole region of a contact.
 
 use glam::DVec3;
 
 use super::contact_id::ContactId;
 use super::feature::Feature;
 
-/// The region in which two shapes touch, overlap, or are within a distance of each other: the polygon in
-/// which the faces that meet lie over each other. Contact manifolds keep at most four of its corners.
+/// The region in which two shapes touch, overlap, or are within a distance of each other: the polygon where
+/// their meeting faces lie over each other. A contact manifold keeps at most four of its corners.
 ///
 /// Everything is in frame 1, that of the first shape. Make one with [`ContactPatch::between`].
 #[derive(Clone, Debug)]
@@ -21,20 +21,20 @@ pub struct ContactPatch {
     pub vertices: Vec<PatchVertex>,
     /// The area of the polygon, seen along the normal. Zero for lines and points.
     pub area: f64,
-    /// Its centre of area, on the surface of shape 1; of a line the middle.
+    /// The centre of its area, on the surface of shape 1; for a line, its middle.
     pub center: DVec3,
 }
 
 /// A place where the shapes meet.
 #[derive(Clone, Copy, Debug)]
 pub struct PatchVertex {
-    /// The point on shape 1. That on shape 2 is farther along the normal by `distance`.
+    /// The point on shape 1. The point on shape 2 is `distance` farther along the normal.
     pub on_1: DVec3,
-    /// From shape 1 to shape 2 along the normal; negative where they overlap.
+    /// The distance from shape 1 to shape 2 along the normal; negative where they overlap.
     pub distance: f64,
-    /// What meets there.
+    /// The features that meet there.
     pub features: [Feature; 2],
-    /// What stays the same from frame to frame.
+    /// The id, which stays the same from frame to frame.
     pub id: ContactId,
 }
 

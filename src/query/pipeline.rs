@@ -1,4 +1,4 @@
-//! The order of the stages, written once for all shapes and all questions.
+//! The order of the stages, written once for all shapes and all kinds of queries.
 
 use glam::DVec3;
 
@@ -12,7 +12,7 @@ use crate::stats::Stage;
 use crate::support::{CsoVertex, Polytope, Support, VertexId};
 use crate::tuning::TILT;
 
-/// Whether a query goes on from a previous frame: what GJK and EPA count as.
+/// Whether a query continues from a previous frame. GJK and EPA count as warm or cold by this.
 #[derive(Clone, Copy)]
 pub(crate) enum Start {
     Warm,
@@ -35,10 +35,10 @@ impl Start {
     }
 }
 
-/// Takes the answer of a query where it is found, by reference: copying an answer stalls on store
+/// Receives the answer of a query by reference, where it is found: copying an answer stalls on store
 /// forwarding.
 pub(crate) trait Sink {
-    /// What is remembered of the pair. It is read only if the bounding spheres are within reach.
+    /// The memory of the pair. It is read only if the bounding spheres are within reach.
     fn memory(&mut self) -> PairMemory {
         PairMemory::None
     }
@@ -46,17 +46,17 @@ pub(crate) trait Sink {
     /// The bounding spheres are too far apart. No axis was computed.
     fn spheres_apart(&mut self);
 
-    /// The shapes are farther apart than was asked about.
+    /// The shapes are farther apart than the query's maximum distance.
     fn separated(&mut self, axis: &SeparatingAxis);
 
     /// The shapes are this near, or overlap.
     fn near(&mut self, proximity: &Proximity);
 }
 
-/// What a search found, and the stage that found it.
+/// The answer of a search, and the stage that found it.
 pub(super) type Found = Option<(Answer, Stage)>;
 
-/// How a query goes on where neither the bounding spheres nor a remembered axis separates the shapes.
+/// How a query continues if neither the bounding spheres nor a remembered axis separate the shapes.
 pub(crate) trait Strategy<A: Support, B: Support>: Copy {
     /// Re-evaluates features that were in contact. Shapes without faces have none.
     #[inline(always)]
@@ -65,7 +65,7 @@ pub(crate) trait Strategy<A: Support, B: Support>: Copy {
         Verdict::Degenerate
     }
 
-    /// Goes on from features on which the `verdict` is not that they are still the answer.
+    /// Continues from features that are no longer the answer, by their `verdict`.
     fn start_from_features(
         self,
         query: &mut Query<'_, '_, A, B>,
@@ -77,7 +77,7 @@ pub(crate) trait Strategy<A: Support, B: Support>: Copy {
         query.search_along(self, normal)
     }
 
-    /// Goes on from an axis that does not separate, along which `vertex` is too near.
+    /// Continues from an axis that does not separate. Along it, `vertex` is too near.
     fn start_from_axis(
         self,
         query: &mut Query<'_, '_, A, B>,
@@ -87,7 +87,7 @@ pub(crate) trait Strategy<A: Support, B: Support>: Copy {
     ) -> Found;
 }
 
-/// Every stage. There is no answer if the shapes have no volume between them, or are not finite.
+/// Runs every stage. There is no answer if the Minkowski difference has no volume or is not finite.
 #[derive(Clone, Copy)]
 pub(crate) struct Full;
 
@@ -107,8 +107,8 @@ impl<A: Polytope, B: Polytope> Strategy<A, B> for Full {
         query.start_walk_from_features(normal, features, verdict)
     }
 
-    /// Often an axis separates that is tilted away from where the shapes come too near; else the facets
-    /// around are the next to look at.
+    /// Often, tilting the axis away from where the shapes come too near makes it separate. Otherwise the
+    /// facets around the vertex come next.
     fn start_from_axis(
         self,
         query: &mut Query<'_, '_, A, B>,
@@ -132,8 +132,8 @@ impl<A: Polytope, B: Polytope> Strategy<A, B> for Full {
     }
 }
 
-/// GJK after the axis, with bounds that need not differ by less than this share of the pair's size.
-/// There is no answer if the shapes overlap.
+/// Runs GJK after the axis. It stops when its bounds differ by less than this share of the pair's size. There
+/// is no answer if the shapes overlap.
 #[derive(Clone, Copy)]
 pub(crate) struct Distance {
     pub gap: f64,
@@ -151,7 +151,7 @@ impl<A: Support, B: Support> Strategy<A, B> for Distance {
     }
 }
 
-/// A tilted axis after the axis itself. There is no answer if neither separates.
+/// Tries the axis and then a tilted one. There is no answer if neither separates.
 #[derive(Clone, Copy)]
 pub(crate) struct AxisOnly;
 
@@ -186,7 +186,7 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
         strategy: impl Strategy<A, B>,
         sink: &mut impl Sink,
     ) -> Option<Stage> {
-        // Half of the pairs that are apart, or more, end here: before anything else is done for them.
+        // At least half of the separated pairs end here, before anything else is done for them.
         if self.cso.are_spheres_apart(self.max_distance) {
             sink.spheres_apart();
             return Some(Stage::BoundingSpheres);
@@ -219,7 +219,7 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
         Some(*stage)
     }
 
-    /// Without memory, along an axis: mostly the line of centres.
+    /// Starts without memory, along an axis, which is mostly the line of centres.
     fn search_along(&mut self, strategy: impl Strategy<A, B>, axis: DVec3) -> Found {
         match self.test_axis(axis, self.cso.start_vertices(axis)) {
             AxisTest::Separating(apart) => Some((Answer::Separated(apart), Stage::Axis)),
@@ -229,7 +229,7 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
         }
     }
 
-    /// Whether an axis separates. `ids` may be those of a memory, of any shapes.
+    /// Whether an axis separates. The `ids` are only remembered, and may be of other shapes.
     #[inline(always)]
     fn test_axis(&mut self, axis: DVec3, ids: [VertexId; 2]) -> AxisTest {
         let start = [
@@ -241,8 +241,8 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
 }
 
 impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
-    /// Answers from `memory` where that is possible, cold otherwise. `None` only if the shapes
-    /// have no volume between them or are not finite.
+    /// Answers from `memory` if possible, and otherwise cold. `None` only if the Minkowski difference has no
+    /// volume or is not finite.
     pub fn run(&mut self, memory: &PairMemory) -> Option<(Answer, Stage)> {
         let mut sink = Collect {
             memory,
@@ -255,7 +255,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         Some((answer, stage))
     }
 
-    /// The axis of shapes whose bounding spheres are apart. What was remembered of their vertices stays.
+    /// The axis of shapes whose bounding spheres are apart. Remembered vertices are kept.
     fn line_of_centers(&self, memory: &PairMemory) -> SeparatingAxis {
         let axis = self.cso.towards_origin();
         SeparatingAxis {

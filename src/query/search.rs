@@ -1,4 +1,4 @@
-//! GJK and EPA, from wherever the cheaper stages have come.
+//! GJK and EPA, continuing from the cheaper stages.
 
 use super::certificate::neighbors;
 use super::feature::{self, Feature};
@@ -26,7 +26,7 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
             Outcome::Separated(apart) => return Some((Answer::Separated(apart), from.gjk())),
             Outcome::Overlapping(_) => return None,
             Outcome::Disjoint(closest) => (closest, closest.normal, closest.distance),
-            // As where the depth is asked for.
+            // As in `run_gjk`.
             Outcome::Unsure(closest) => {
                 let depth = self.expand(&closest.simplex)?;
                 (closest, depth.normal, -depth.depth)
@@ -72,7 +72,8 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
     }
 
-    /// EPA from GJK's last simplex. What it finds apart is so by hardly more than rounding.
+    /// EPA from GJK's last simplex. If it finds the shapes apart, their distance is hardly more than
+    /// rounding.
     fn run_epa(&mut self, simplex: &Simplex, stage: Stage) -> Found {
         let depth = self.expand(simplex)?;
         self.store_polytope();
@@ -82,7 +83,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         Some((answer, stage))
     }
 
-    /// The normal of a face that EPA found to separate farther than was asked about.
+    /// The normal of EPA's last face, if it separates the shapes by more than the maximum distance.
     fn apart(&self, depth: &Penetration) -> Option<SeparatingAxis> {
         (-depth.depth > self.max_distance).then(|| SeparatingAxis {
             axis: depth.normal,
@@ -91,9 +92,9 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         })
     }
 
-    /// The depth, which may be proved to be the candidate's by a polytope of a previous frame, or by the
-    /// facets around. If not EPA grows one from points near the candidate; where it finds the shapes
-    /// separate, GJK finds how far.
+    /// The depth. A polytope of a previous frame, or the adjacent facets, may prove that it is the
+    /// candidate's. Otherwise EPA expands a polytope from points near the candidate. If it finds the shapes
+    /// apart, GJK finds the distance.
     pub(super) fn find_depth(&mut self, candidate: &Proximity, stage: Stage, from: Start) -> Found {
         let known = -candidate.signed_distance;
         debug_assert!(known >= 0.0, "they do not overlap: {candidate:?}");
@@ -122,7 +123,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         Some((self.overlapping(&depth), from.epa()))
     }
 
-    /// Keeps the polytope that EPA expanded for the frames to come.
+    /// Keeps the polytope that EPA expanded, for later frames.
     fn store_polytope(&mut self) {
         if let Some((cache, key)) = &mut self.polytope_cache {
             cache.store(*key, self.cso, self.scratch);

@@ -1,4 +1,4 @@
-//! Where an expanding polytope starts from.
+//! The points from which a polytope expands.
 
 use super::feature::{CORNERS, Feature};
 use crate::support::{Cso, CsoVertex, Polytope};
@@ -11,7 +11,7 @@ pub(super) struct EpaSeeds {
 }
 
 impl EpaSeeds {
-    /// Around the facet that `features` span, and the centre beneath it.
+    /// The corners of the facet that `features` span, and the centre beneath it.
     pub fn under<A: Polytope, B: Polytope>(cso: &Cso<'_, A, B>, features: [Feature; 2]) -> Self {
         let mut seeds = Self::default();
         let (corners_1, count_1) = features[0].corners(cso.shape_1);

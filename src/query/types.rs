@@ -1,4 +1,4 @@
-//! What goes into a query, and what comes out of it.
+//! The input and the output of a query.
 
 use glam::DVec3;
 
@@ -6,7 +6,7 @@ use super::feature::Feature;
 use crate::gjk::SeparatingAxis;
 use crate::support::VertexId;
 
-/// What is remembered of a pair from one frame to the next.
+/// What one frame remembers about a pair for the next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PairMemory {
     /// Nothing: the pair is new.
@@ -28,21 +28,21 @@ pub struct Proximity {
     pub on_1: DVec3,
     /// The witness point on shape 2.
     pub on_2: DVec3,
-    /// The features that the witness points lie on.
+    /// The features on which the witness points lie.
     pub features: [Feature; 2],
 }
 
 /// The answer to a query.
 #[derive(Clone, Copy, Debug)]
 pub enum Answer {
-    /// Farther apart than the query asked about.
+    /// The shapes are farther apart than the query's maximum distance.
     Separated(SeparatingAxis),
-    /// This near, or overlapping.
+    /// The shapes are this near, or overlap.
     Near(Proximity),
 }
 
 impl Answer {
-    /// What the next frame's query is to be given.
+    /// The memory to pass to the next frame's query.
     pub fn memory(&self) -> PairMemory {
         match self {
             Self::Separated(apart) => PairMemory::Axis(apart.axis, apart.ids),

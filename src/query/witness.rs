@@ -1,8 +1,8 @@
 //! The witness points of shapes that overlap.
 //!
-//! The triangle that EPA ends with may be a small part of a facet, and the foot of the origin beside it.
-//! Moved apart along the normal, the shapes are nearest where they were deepest, and GJK finds these
-//! points on whatever features hold them.
+//! EPA's last triangle may be a small part of a facet, and the origin may project beside it. If the shapes
+//! are moved apart along the normal, they are nearest where they were deepest, and GJK finds these points on
+//! any features.
 
 use glam::DVec3;
 
@@ -15,7 +15,7 @@ use crate::stats::Cost;
 use crate::support::{Cso, Polytope};
 use crate::tolerance::{DEPTH_GAP, WITNESS_GAP};
 
-/// The answer that a depth amounts to. Each witness point lies on its own shape.
+/// The answer for a depth. Each witness point lies on its own shape.
 pub(super) fn of_depth<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     depth: &Penetration,
@@ -46,7 +46,7 @@ pub(super) fn of_depth<A: Polytope, B: Polytope>(
     };
     let start = depth.face.map(|vertex| apart.vertex(vertex.ids));
     match gjk::distance::<Preferred, _, _>(&apart, &start, f64::INFINITY, cost) {
-        // Whatever the bounds, its points are on their shapes.
+        // The points are on their shapes, whatever the bounds are.
         Outcome::Disjoint(closest) | Outcome::Unsure(closest) => {
             let simplex = closest.simplex.vertices();
             let features = feature::of_simplex(cso, simplex, depth.normal);

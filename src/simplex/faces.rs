@@ -1,4 +1,4 @@
-//! What the geometric sub-algorithms share: segments, the choice among faces, and the tetrahedron.
+//! The parts that the geometric sub-algorithms share: segments, the choice among faces, and the tetrahedron.
 
 use glam::DVec3;
 
@@ -14,8 +14,8 @@ pub struct Combination<const N: usize> {
 }
 
 impl<const N: usize> Combination<N> {
-    /// Combines the vertices with the weights, scaled to sum 1, if all are positive: if the point is
-    /// in the interior.
+    /// Combines the vertices with the weights, scaled to sum 1, if all are positive, so that the point is in
+    /// the interior.
     #[inline]
     pub fn interior(y: [DVec3; N], weights: [f64; N]) -> Option<Self> {
         let positive = weights.iter().all(|&weight| weight > 0.0);
@@ -35,7 +35,7 @@ impl<const N: usize> Combination<N> {
         sum.is_finite().then_some(Self { point, lambda })
     }
 
-    /// The combination that is vertex i alone.
+    /// Vertex i as a combination.
     #[inline]
     pub fn vertex(point: DVec3, i: usize) -> Self {
         let mut lambda = [0.0; N];
@@ -61,7 +61,7 @@ impl<const N: usize> Combination<N> {
         self.point.length_squared()
     }
 
-    /// The nearer of two, never one with NaN if `self` has none.
+    /// The nearer of two. It contains no NaN if `self` contains none.
     #[inline]
     pub fn nearer(self, other: Self) -> Self {
         if other.distance() < self.distance() {
@@ -72,7 +72,7 @@ impl<const N: usize> Combination<N> {
     }
 }
 
-/// Finds the nearest point of a triangle, the step by which the geometric sub-algorithms differ.
+/// Finds the nearest point of a triangle: the step in which the geometric sub-algorithms differ.
 pub trait Triangle {
     fn triangle(a: DVec3, b: DVec3, c: DVec3) -> Combination<3>;
 }
@@ -124,8 +124,8 @@ pub fn nearest_edge(a: DVec3, b: DVec3, c: DVec3, chosen: [bool; 3]) -> Combinat
     best
 }
 
-/// The nearest point of a triangle whose normal is not to be trusted: the best of its edges and of
-/// `areas`, the weights of the projected origin, should these be convex.
+/// The nearest point of a triangle with an unreliable normal: the best of its edges, and of the projected
+/// origin if its weights `areas` are convex.
 #[cold]
 pub fn nearest_in_sliver(a: DVec3, b: DVec3, c: DVec3, areas: [f64; 3]) -> Combination<3> {
     let edge = nearest_edge(a, b, c, [true; 3]);
@@ -133,7 +133,7 @@ pub fn nearest_in_sliver(a: DVec3, b: DVec3, c: DVec3, areas: [f64; 3]) -> Combi
     inside.map_or(edge, |inside| edge.nearer(inside))
 }
 
-/// A triangle's normal, of twice its area's length, and whether the triangle is a sliver.
+/// A triangle's normal, whose length is twice the area, and whether the triangle is a sliver.
 #[inline]
 pub fn normal(ab: DVec3, bc: DVec3, ca: DVec3) -> (DVec3, bool) {
     let normal = ca.cross(ab);
@@ -144,7 +144,7 @@ pub fn normal(ab: DVec3, bc: DVec3, ca: DVec3) -> (DVec3, bool) {
     widest_corner(ab, bc, ca)
 }
 
-/// The normal as the product of the two shortest edges, which carries the least rounding.
+/// The normal as the cross product of the two shortest edges, which has the least rounding.
 #[cold]
 fn widest_corner(ab: DVec3, bc: DVec3, ca: DVec3) -> (DVec3, bool) {
     let [x, y, z] = [ab, bc, ca].map(DVec3::length_squared);
@@ -159,8 +159,8 @@ fn widest_corner(ab: DVec3, bc: DVec3, ca: DVec3) -> (DVec3, bool) {
     (normal, !trusted)
 }
 
-/// The nearest point of a tetrahedron: the origin if inside, else the best of the faces that have
-/// it on their outer side; of all faces, if the tetrahedron is too flat to tell.
+/// The nearest point of a tetrahedron: the origin if it is inside, and otherwise the best of the faces that
+/// have the origin on their outer side. If the tetrahedron is too flat to decide, all faces are tried.
 #[inline]
 fn tetrahedron<T: Triangle>(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Combination<4> {
     let (inner, trusted) = sub_volumes(a, b, c, d);
@@ -181,9 +181,9 @@ fn tetrahedron<T: Triangle>(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Combinati
     }
 }
 
-/// Whether a point of the tetrahedron is so much nearer to the origin than all of the faces that
-/// the origin must be inside: else the segment from the point would leave through a nearer face.
-/// The factor 2 keeps the rounding of equal distances from passing as proof.
+/// Whether a point of the tetrahedron is so much nearer to the origin than all faces that the origin must be
+/// inside: otherwise the segment from the point to the origin would leave through a nearer face. The factor 2
+/// keeps rounding of equal distances from counting as proof.
 #[inline]
 pub fn proves_inside(squared_distance: f64, squared_face_distance: f64) -> bool {
     4.0 * squared_distance < squared_face_distance
@@ -214,8 +214,8 @@ fn nearest_face<T: Triangle>(
     best
 }
 
-/// Volumes of the tetrahedra in which the origin takes the place of one vertex each, positive on
-/// the inner side of the opposite face; and whether the signs can be trusted.
+/// The volumes of the four tetrahedra in which the origin replaces one vertex, positive on the inner side of
+/// the opposite face; and whether their signs are reliable.
 #[inline]
 fn sub_volumes(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> ([f64; 4], bool) {
     let (ab, ac, ad) = (b - a, c - a, d - a);

@@ -91,9 +91,9 @@ fn certified<const N: usize>(y: &[DVec3; N], v: DVec3) -> bool {
     norm <= allowed || y.iter().all(|&p| v.dot(v - p) <= allowed * norm)
 }
 
-/// The backup procedure: the nearest among all v(aff Y_s) in conv Y_s. Each is a point of the
-/// simplex even if its determinants are rounding, so that the nearest is never a bad choice. (The
-/// tetrahedron comes last, and must prove that it has the origin inside.)
+/// The backup procedure: the nearest among all v(aff Y_s) in conv Y_s. Each is a point of the simplex even if
+/// its determinants are mere rounding, so the nearest is never a bad choice. (The tetrahedron comes last, and
+/// must prove that the origin is inside.)
 #[cold]
 fn backup<const N: usize, const S: usize>(
     delta: &Determinants<N, S>,

@@ -1,9 +1,9 @@
 //! Distance sub-algorithms: the point of a simplex nearest to the origin.
 //!
-//! Three answers to one question, to be compared and exchanged freely. Each of them returns a
-//! convex combination of the vertices, whatever rounding does to the case distinctions: a wrong
-//! turn costs distance, never membership. Coordinates may range over many decades (1e-40 to 1e40);
-//! beyond that products over- or underflow, and the answer degrades to a vertex.
+//! Three algorithms for one problem, which can be compared and exchanged freely. Each returns a convex
+//! combination of the vertices, whatever rounding does to its case distinctions: a wrong decision costs
+//! distance, never membership. Coordinates may range from 1e-40 to 1e40; beyond that, products over- or
+//! underflow, and the answer degrades to a vertex.
 
 mod faces;
 mod johnson;
@@ -17,17 +17,17 @@ pub use johnson::Johnson;
 pub use signed_volumes::SignedVolumes;
 pub use voronoi::Voronoi;
 
-/// The one that our queries use: on hulls GJK with it is as quick as with any.
+/// The one that our queries use. On hulls, GJK is as fast with it as with any other.
 pub(crate) type Preferred = SignedVolumes;
 
-/// The point of a simplex nearest to the origin, and the smallest face that holds it.
+/// The point of a simplex nearest to the origin, and the smallest face that contains it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Nearest {
-    /// v(conv Y): the nearest point; exactly zero when the origin is inside of a tetrahedron.
+    /// v(conv Y): the nearest point; exactly zero if the origin is inside a tetrahedron.
     pub point: DVec3,
-    /// Bit i is set when vertex i belongs to the smallest face that holds the point.
+    /// Bit i is set if vertex i belongs to the smallest face that contains the point.
     pub face: u8,
-    /// Barycentric coordinates; zero outside of `face`; sum 1.
+    /// Barycentric coordinates with the sum 1; zero outside `face`.
     pub lambda: [f64; 4],
 }
 
@@ -44,10 +44,10 @@ impl From<Combination<4>> for Nearest {
     }
 }
 
-/// Finds the point of a simplex nearest to the origin. Implementors are zero-sized: the choice is
-/// made at compile time.
+/// Finds the point of a simplex nearest to the origin. Implementations have no size: the choice is made at
+/// compile time.
 pub trait DistanceSubalgorithm {
-    /// `points`: 1 to 4 vertices, in any order and position, degenerate or not. (No vertices have
-    /// no nearest point: the answer is then the origin with an empty face.)
+    /// `points` are 1 to 4 vertices, in any order and position, degenerate or not. (Without vertices, the
+    /// answer is the origin with an empty face.)
     fn nearest(points: &[DVec3]) -> Nearest;
 }

@@ -18,8 +18,8 @@ impl DistanceSubalgorithm for SignedVolumes {
 }
 
 impl Triangle for SignedVolumes {
-    /// Areas are measured in the coordinate plane on which the triangle is largest: products of two
-    /// lengths, rather than four, lose little to cancellation.
+    /// Areas are measured in the coordinate plane in which the triangle is largest: products of two lengths,
+    /// rather than four, lose little to cancellation.
     #[inline]
     fn triangle(a: DVec3, b: DVec3, c: DVec3) -> Combination<3> {
         let (n, sliver) = normal(b - a, c - b, a - c);
@@ -36,8 +36,7 @@ impl Triangle for SignedVolumes {
     }
 }
 
-/// Drops the coordinate in which the normal is largest; counter-clockwise about the normal stays
-/// counter-clockwise.
+/// Drops the coordinate in which the normal is largest, and keeps the orientation about the normal.
 #[inline]
 fn flatten(n: DVec3, y: [DVec3; 3]) -> [DVec2; 3] {
     let size = n.abs();

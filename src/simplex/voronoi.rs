@@ -1,4 +1,4 @@
-//! Voronoi regions: which vertex, edge or face of the simplex the origin projects on.
+//! Voronoi regions: the vertex, edge or face of the simplex onto which the origin projects.
 
 use glam::DVec3;
 
@@ -33,7 +33,8 @@ impl Triangle for Voronoi {
         if bc_c <= 0.0 && ca_c <= 0.0 {
             return Combination::vertex(c, 2);
         }
-        // Areas of the projected origin with each edge, times twice the triangle's.
+        // The areas of the triangles of the projected origin and each edge, times twice the area of the
+        // triangle.
         let (n, sliver) = normal(ab, bc, ca);
         let moment = n.cross(a);
         let (at_b, at_c) = (moment.dot(ca), moment.dot(ab));
@@ -50,7 +51,7 @@ impl Triangle for Voronoi {
         if at_b <= 0.0 && ca_c >= 0.0 && ca_a >= 0.0 {
             return segment(c, a).among(|[p, q]| [q, 0.0, p]);
         }
-        // If rounding left a gap between the regions, the origin projects next to an edge.
+        // If rounding leaves a gap between the regions, the origin projects next to an edge.
         Combination::interior([a, b, c], [at_a, at_b, at_c])
             .unwrap_or_else(|| nearest_edge(a, b, c, [true; 3]))
     }

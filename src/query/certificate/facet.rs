@@ -1,16 +1,15 @@
 //! Features in contact, and the proof that they still are.
 //!
-//! A pair of features spans a facet of the Minkowski difference: a face and a vertex, or two
-//! edges that cross. Re-evaluated at the present poses it is again a polygon inside of the
-//! Minkowski difference. One support pair along its normal shows whether its plane supports the
-//! difference: then its signed distance from the origin bounds the true one from one side. From
-//! the other side,
+//! A pair of features spans a facet of the Minkowski difference: a face and a vertex, or two edges that
+//! cross. Re-evaluated at the present poses, it is again a polygon inside the Minkowski difference. One
+//! support pair along its normal shows whether its plane supports the difference. If so, the signed distance
+//! of the plane from the origin bounds the true one from one side. From the other side,
 //!
 //! - if the plane separates the shapes: the origin projects into the polygon, so a point of the
 //!   difference is that near;
-//! - if they overlap by `d`: the pyramid from the polygon to the difference's centre lies in the
-//!   difference, and when the origin is at least `d` inside of all of its sides, so does the ball
-//!   of radius `d`; no direction has a smaller depth. *Globally*: no other face was looked at.
+//! - if they overlap by `d`: the pyramid from the polygon to the difference's centre lies in the difference.
+//!   If the origin is at least `d` inside all of its sides, so does the ball of radius `d`, and no direction
+//!   has a smaller depth. This is a *global* proof, although no other face was examined.
 
 use std::cmp::Ordering;
 
@@ -139,7 +138,7 @@ impl FacetTest {
             return Verdict::Degenerate;
         };
         let normal = plane.normal;
-        // Before a vertex is searched for: whether or not the two edges still span a facet, it is left.
+        // This comes before the support: the facet is left whether or not the two edges still span one.
         let vertices = parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], plane.is_along_cross);
         let corners = vertices.iter().map(|vertex| vertex.w);
         let [s, t] = crossing(offset, along_1, along_2);
@@ -187,14 +186,14 @@ impl FacetTest {
 struct EdgePlane {
     /// Out of the difference.
     normal: DVec3,
-    /// The normal is along the cross product of the edges' directions, not against it.
+    /// Whether the normal is along the cross product of the edges' directions, not against it.
     is_along_cross: bool,
-    /// The lesser height of the parallelogram.
+    /// The smaller height of the parallelogram.
     least_height: f64,
 }
 
 impl EdgePlane {
-    /// `None` for edges that are parallel. `outward` is any vector from inside of the difference to the facet.
+    /// `None` for parallel edges. `outward` is any vector from inside the difference to the facet.
     #[inline]
     fn new(along_1: DVec3, along_2: DVec3, outward: DVec3) -> Option<Self> {
         let cross = along_1.cross(along_2);
@@ -215,7 +214,7 @@ impl EdgePlane {
     }
 }
 
-/// The corners of the facet that two edges span, counter-clockwise seen from outside. `along`: the
+/// The corners of the facet that two edges span, counter-clockwise seen from outside. `along` is whether the
 /// outward normal is along the cross product of their directions, not against it.
 #[inline]
 fn parallelogram(

@@ -1,10 +1,10 @@
-//! The proof of a depth with the facets around.
+//! Proofs of a depth by the adjacent facets.
 //!
-//! A pyramid over a polygon of points of the difference, its apex in the difference, lies in the
-//! difference. Where the ball of the depth's radius looks over a side of the pyramid under the nearest
-//! facet, the pyramid under the facet across that side may have room for the rest: if the ball is beneath
-//! its plane and inside of its other sides, each point beyond the one side is in it. So no direction has
-//! a smaller depth, and no polytope need be expanded to show it.
+//! A pyramid over a polygon of points of the difference, with its apex in the difference, lies in the
+//! difference. The ball with the radius of the depth may stick out through a side of the pyramid under the
+//! nearest facet. Then the pyramid under the facet across that side may contain the rest: it does if the ball
+//! is beneath its plane and inside its other sides. So no direction has a smaller depth, and no polytope need
+//! be expanded to show this.
 
 use std::array;
 
@@ -17,11 +17,11 @@ use crate::query::gauss_map;
 use crate::query::types::Proximity;
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 
-/// A ball that looks over more sides than these is larger than the facet, and than those around.
+/// A ball that sticks out through more sides than this is larger than the facet and its neighbours.
 const MAX_SIDES: usize = 2;
 
-/// Whether the pyramids under a facet, whose plane supports the difference, and under those across its
-/// sides together hold the ball around the origin that reaches to the plane, up to `tolerance`.
+/// Whether the pyramids under a facet and under its neighbours together contain the ball around the origin
+/// that reaches to the facet's plane, up to `tolerance`. The plane must support the difference.
 pub(in crate::query) fn contains_ball<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     facet: &Proximity,
@@ -46,16 +46,16 @@ pub(in crate::query) fn contains_ball<A: Polytope, B: Polytope>(
         })
 }
 
-/// Pyramids with a common apex, and the ball that they may hold.
+/// Pyramids with a common apex, and the ball that they may contain.
 struct Pyramids {
     apex: DVec3,
     radius: f64,
-    /// The pyramid of a facet no farther than this from the apex counts as flat.
+    /// If a facet is no farther than this from the apex, its pyramid counts as flat.
     tolerance: f64,
 }
 
 impl Pyramids {
-    /// The facet that features span, if its plane is farther out than the ball.
+    /// The facet that features span, if the ball is beneath its plane.
     fn facet<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
@@ -72,21 +72,21 @@ impl Pyramids {
         has_room.then_some(facet)
     }
 
-    /// Through a side and the apex: a normal of that plane, and how far the facet's middle is to its side.
+    /// The plane through a side and the apex: a normal, and how far the facet's middle is along it.
     fn side_plane(&self, facet: &Facet, i: usize) -> (DVec3, f64) {
         let [from, to] = facet.ends(i).map(|end| end.w);
         let normal = (to - from).cross(self.apex - from);
         (normal, normal.dot(facet.middle - from))
     }
 
-    /// Whether the ball is inside of the plane through a side.
+    /// Whether the ball is on the inner side of the plane through a side and the apex.
     fn edge_contains_ball(&self, facet: &Facet, i: usize) -> bool {
         let (normal, middle) = self.side_plane(facet, i);
         ball_is_inside(facet.corners[i].w, normal * middle.signum(), self.radius)
     }
 
-    /// Whether the second facet is across the side `i` of the first one, and the ball inside of all of its
-    /// other sides.
+    /// Whether the second facet is across side `i` of the first, and the ball is inside all of its other
+    /// sides.
     fn contains_remainder(&self, [here, there]: [&Facet; 2], i: usize) -> bool {
         let side = here.ends(i).map(|end| end.ids);
         let is_shared = |&k: &usize| {
@@ -104,7 +104,7 @@ impl Pyramids {
     }
 }
 
-/// A facet of the difference, or what may be one: a polygon of its points.
+/// A polygon of points of the difference, which may be a facet.
 struct Facet {
     corners: [CsoVertex; CORNERS],
     len: usize,
@@ -113,7 +113,7 @@ struct Facet {
 }
 
 impl Facet {
-    /// That of these features.
+    /// The facet that features span.
     fn new<A: Polytope, B: Polytope>(cso: &Cso<'_, A, B>, features: [Feature; 2]) -> Option<Self> {
         let (ids, len) = corners(cso, features)?;
         let corners = ids.map(|ids| cso.vertex(ids));
@@ -129,7 +129,7 @@ impl Facet {
         [&self.corners[i], &self.corners[(i + 1) % self.len]]
     }
 
-    /// A side as walks know it, of the facet with this outward normal.
+    /// A side in the form that walks use. The facet has this outward normal.
     fn side(&self, i: usize, normal: DVec3) -> FacetEdge {
         let [from, to] = self.ends(i);
         let outward = (to.w - from.w).cross(normal);
@@ -141,8 +141,8 @@ impl Facet {
     }
 }
 
-/// The corners of the polygon that two features span, in turn, and how many they are. `None` for more than
-/// [`CORNERS`]: such a facet is large, so mostly its own pyramid proves the depth.
+/// The corners of the polygon that two features span, in order, and their number. `None` if there are more
+/// than [`CORNERS`]: such a facet is large, and mostly its own pyramid proves the depth.
 fn corners<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     features: [Feature; 2],
@@ -180,8 +180,8 @@ mod tests {
         Hull::from_points(&points).expect("points on an ellipsoid are their own hull")
     }
 
-    /// Facets that the origin projects into at depths of all kinds, walked to from random directions:
-    /// those that are not the nearest are proved of nothing.
+    /// Walks from random directions to facets into which the origin projects, at all kinds of depths. A facet
+    /// that is not the nearest must never be proved to be.
     #[test]
     fn only_the_depth_is_proved() {
         let mut rng = oorandom::Rand64::new(3);

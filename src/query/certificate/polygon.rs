@@ -1,5 +1,5 @@
-//! A facet of the Minkowski difference as a polygon, and the origin: whether it projects inside, and
-//! how deep it is in the pyramid beneath.
+//! A facet of the Minkowski difference as a polygon: whether the origin projects into it, and how deep the
+//! origin is in the pyramid beneath.
 
 use crate::simd::f32x4;
 use glam::DVec3;
@@ -8,9 +8,9 @@ use crate::map_pair::map_pair;
 use crate::support::{FaceId, FacePoints, Polytope};
 use crate::tolerance::INSET_ROUNDING;
 
-/// How far the projection of a point into a face's plane is at least inside of the face; not above zero
-/// where it may be outside. Four sides at a time, in f32: rounding is taken off. The point is no farther
-/// from the plane than `distance`.
+/// A lower bound on how far inside a face the projection of a point is; at most zero if it may be outside. It
+/// is computed in f32 for four sides at a time, and rounding is subtracted. The point is at most `distance`
+/// from the plane.
 #[inline]
 pub(in crate::query) fn inset(
     shape: &impl Polytope,
@@ -24,7 +24,7 @@ pub(in crate::query) fn inset(
     let mut least = f32x4::splat(f32::INFINITY);
     let mut is_inside = f32x4::ZERO.simd_eq(f32x4::ZERO);
     for first in (0..count).step_by(4) {
-        // Beyond the last corner come the first ones again.
+        // After the last corner, the first ones come again.
         let number = |i: usize| {
             if first + i < count {
                 first + i
@@ -45,7 +45,7 @@ pub(in crate::query) fn inset(
         let inward_z = y * normal.x - x * normal.y;
         let squared = inward_x * inward_x + inward_y * inward_y + inward_z * inward_z;
         let height = -(inward_x * from_x + inward_y * from_y + inward_z * from_z) / squared.sqrt();
-        // The height over a side without length is NaN.
+        // For a side without length, the height is NaN.
         is_inside &= height.simd_gt(f32x4::ZERO);
         least = least.fast_min(height);
     }
@@ -57,11 +57,12 @@ pub(in crate::query) fn inset(
     a.min(b).min(c.min(d)) - INSET_ROUNDING * size
 }
 
-/// Whether the ball of radius `depth` around the origin is in the hull of an apex and a disc around the
-/// point that is `depth` along the normal: the part of a face that is `inset`.
+/// Whether the ball of radius `depth` around the origin is in the hull of an apex and a disc of radius
+/// `inset`. The disc is a part of a face, and its centre is `depth` along the normal.
 ///
-/// The disc alone reaches that far in all directions but those against the normal up to an angle, of which
-/// half has the tangent `depth / inset`; and there the apex does, if it does at that angle.
+/// The disc alone reaches that far in all directions, except those within an angle of the reversed normal;
+/// half of this angle has the tangent `depth / inset`. In those directions the apex reaches that far, if it
+/// does so at that angle.
 #[inline]
 pub(in crate::query) fn cone_contains_ball(
     inset: f64,
@@ -81,7 +82,7 @@ pub(in crate::query) fn cone_contains_ball(
 
 /// A side of a polygon.
 pub(in crate::query) struct PolygonEdge {
-    /// The numbers of its corners.
+    /// The indices of its corners.
     pub ends: [usize; 2],
     /// From the first to the second.
     pub along: DVec3,
@@ -118,7 +119,7 @@ pub(in crate::query) fn edge_outside_origin(
     beyond
 }
 
-/// Whether the origin is at least `depth` inside of all side planes of the pyramid over a
+/// Whether the origin is at least `depth` inside all side planes of the pyramid over a
 /// polygon, counter-clockwise seen from outside, whose apex is beneath it.
 #[inline]
 pub(in crate::query) fn pyramid_contains_ball(
@@ -136,15 +137,16 @@ pub(in crate::query) fn pyramid_contains_ball(
     })
 }
 
-/// Whether the ball around the origin with this radius, which may be negative, is inside of the plane
-/// through a corner.
+/// Whether the ball around the origin with this radius, which may be negative, is on the inner side of the
+/// plane through a corner.
 #[inline]
 pub(in crate::query) fn ball_is_inside(corner: DVec3, inward: DVec3, radius: f64) -> bool {
     let (height, radius) = (-inward.dot(corner), radius.max(0.0));
     height >= 0.0 && height * height >= radius * radius * inward.length_squared()
 }
 
-/// Where the lines `a + s along_1` and `b + t along_2`, `offset` being `a - b`, are nearest.
+/// The parameters at which the lines `a + s along_1` and `b + t along_2` are nearest, where `offset` is `a -
+/// b`.
 #[inline]
 pub(in crate::query) fn crossing(offset: DVec3, along_1: DVec3, along_2: DVec3) -> [f64; 2] {
     let cross = along_1.cross(along_2);

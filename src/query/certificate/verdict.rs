@@ -1,4 +1,4 @@
-//! What a pair of features proves, and where the walk goes on.
+//! What a pair of features proves, and where the walk continues.
 
 use glam::DVec3;
 
@@ -8,17 +8,17 @@ use crate::pose::{RelativePose, is_unit};
 use crate::query::types::Proximity;
 use crate::support::{CsoVertex, VertexId};
 
-/// What a pair of features turned out to prove.
+/// What a pair of features proves.
 pub(crate) enum Verdict {
-    /// The facet's plane separates the shapes by more than was asked about.
+    /// The facet's plane separates the shapes by more than the maximum distance.
     Separated(SeparatingAxis),
     /// The facet's signed distance is that of the shapes.
     Certified(Proximity),
-    /// The origin projects beyond this side of the facet: another one is nearest by now.
+    /// The origin projects beyond this side of the facet: another facet is nearest now.
     OutsideEdge(FacetEdge),
-    /// The facet's plane, with this normal, cuts through the difference: this vertex is beyond it.
+    /// The facet's plane, with this normal, cuts through the difference, as this vertex is beyond it.
     NotSupporting(CsoVertex, DVec3),
-    /// The shapes overlap, perhaps less elsewhere. The answer if the facet turns out to be the
+    /// The shapes overlap, but perhaps less in another direction. This is the answer if the facet is the
     /// nearest.
     Undecided(Proximity),
     /// These features do not span a facet.
@@ -37,7 +37,7 @@ pub(crate) struct FacetEdge {
 }
 
 impl FacetEdge {
-    /// From one vertex to the next, which is `along` away.
+    /// The side from one vertex to the next, with the vector `along` between them.
     #[inline]
     pub(in crate::query) fn new(ends: [[VertexId; 2]; 2], along: DVec3, normal: DVec3) -> Self {
         debug_assert!(is_unit(normal), "no unit vector: {normal}");
@@ -50,7 +50,7 @@ impl FacetEdge {
 }
 
 impl Verdict {
-    /// From the frame of shape 2, with the shapes in the other order, to frame 1.
+    /// Converts from the frame of shape 2, with the shapes in the other order, to frame 1.
     #[inline]
     pub(in crate::query) fn reversed(&self, pose: &RelativePose) -> Self {
         let direction = |dir| -pose.direction_to_1(dir);

@@ -1,8 +1,8 @@
-//! Nearest features without a plane between them: an edge or a vertex against a vertex, as where a
-//! ball or the end of a capsule rolls over an edge.
+//! Nearest features that span no facet: a vertex against an edge or another vertex, for instance if a ball or
+//! the end of a capsule rolls over an edge.
 //!
-//! Their nearest points bound the distance from above, one support pair along the line between
-//! them bounds it from below.
+//! Their nearest points bound the distance from above, and a support pair along the line between them bounds
+//! it from below.
 
 use glam::DVec3;
 
@@ -14,7 +14,7 @@ use crate::stats::Cost;
 use crate::support::{Cso, Polytope};
 use crate::tolerance::MIN_DIRECTED_DISTANCE;
 
-/// The answer that `features` prove, if both bounds meet or the lower one is out of reach.
+/// The answer that `features` prove, if both bounds meet or the lower one exceeds the maximum distance.
 pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     features: [Feature; 2],
