@@ -5,13 +5,15 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::epa::{EpaScratch, PolytopeCache};
 use crate::manifold::ClipScratch;
+use crate::parry::composite::seams::SeamsCache;
 use crate::parry::hull_cache::HullCache;
 use crate::parry::hull_cache::registry::PreparedHull;
 
-/// What a thread keeps from query to query: prepared hulls, and memory to work in.
+/// What a thread keeps from query to query: prepared hulls, seams of compounds, and memory to work in.
 #[derive(Default)]
 pub(crate) struct ThreadWorkspace {
     pub hulls: HullCache,
+    pub seams: SeamsCache,
     pub workspace: Workspace,
     /// How often all had been asked to trim when it was made.
     trims: u64,

@@ -153,7 +153,7 @@ fn seams_of_a_compound_do_not_stop_what_slides() {
     let plain = cube.as_convex_polyhedron().expect("a hull").clone();
     let prepared = SharedShape::new(HullShape::try_from(plain).expect("a solid"));
     slide_over(&row(&cube));
-    // Parry smooths no seams between `HullShape`s.
+    slide_over(&row(&prepared));
     slide_over(&PreparedShapes::default().prepare(&row(&prepared)));
 }
 

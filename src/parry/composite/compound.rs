@@ -9,8 +9,8 @@ use parry3d::math::Pose;
 use parry3d::query::PersistentQueryDispatcher;
 use parry3d::shape::{Compound, Shape};
 
+use crate::parry::composite::seams::Seams;
 use crate::parry::composite::sub_manifolds::{SubManifolds, SubShape};
-use crate::parry::constraints::Constraints;
 use crate::parry::operand::Operand;
 use crate::parry::order::PairOrder;
 
@@ -25,21 +25,23 @@ pub(crate) fn compounds<M, C, F>(
     F: PersistentQueryDispatcher<M, C>,
 {
     let pos21 = pos12.inverse();
-    let whole_2 = c2
-        .local_aabb()
-        .transform_by(pos12)
-        .loosened(sub_manifolds.prediction);
+    let prediction = sub_manifolds.prediction;
+    let whole_2 = c2.local_aabb().transform_by(pos12).loosened(prediction);
+    let whole_1 = c1.local_aabb().transform_by(&pos21).loosened(prediction);
+    let seams_1 = Seams::near(c1, &whole_2);
+    let seams_2 = Seams::near(c2, &whole_1);
     for i in c1.bvh().intersect_aabb(&whole_2) {
-        let part_1 = part(c1, i);
+        let part_1 = part(c1, &seams_1, i);
         let near_1 = c1.aabbs()[i as usize].loosened(sub_manifolds.prediction);
-        let pos_part1_2 = c1.shapes()[i as usize].0.inv_mul(pos12);
+        let pos_part1_2 = part_1.pos.map_or(*pos12, |pos| pos.inv_mul(pos12));
         for k in c2.bvh().intersect_aabb(&near_1.transform_by(&pos21)) {
             // Boxes around turned boxes are large: the other way round many are apart.
             if !box_in(c2, k, pos12).intersects(&near_1) {
                 continue;
             }
-            let pos12 = pos_part1_2 * c2.shapes()[k as usize].0;
-            sub_manifolds.update_pair(&pos12, &part_1, &part(c2, k));
+            let part_2 = part(c2, &seams_2, k);
+            let pos12 = part_2.pos.map_or(pos_part1_2, |pos| pos_part1_2 * pos);
+            sub_manifolds.update_pair(&pos12, &part_1, &part_2);
         }
     }
     sub_manifolds.finish();
@@ -59,8 +61,9 @@ pub(crate) fn compound_and_convex<M, C, F>(
 {
     let reach = sub_manifolds.reach(convex, pos12, order);
     let whole = SubShape::whole(convex);
+    let seams = Seams::near(compound, &reach);
     for i in compound.bvh().intersect_aabb(&reach) {
-        sub_manifolds.update_part(pos12, &part(compound, i), &whole, order);
+        sub_manifolds.update_part(pos12, &part(compound, &seams, i), &whole, order);
     }
     sub_manifolds.finish();
 }
@@ -69,13 +72,12 @@ fn box_in(compound: &Compound, part: u32, pose: &Pose) -> Aabb {
     compound.aabbs()[part as usize].transform_by(pose)
 }
 
-fn part(compound: &Compound, id: u32) -> SubShape<'_> {
+fn part<'a>(compound: &'a Compound, seams: &'a Seams<'_>, id: u32) -> SubShape<'a> {
     let (pos, shape) = &compound.shapes()[id as usize];
-    let constraints = compound.part_normal_constraints(id);
     SubShape {
         id,
         operand: Operand::new(&**shape),
         pos: Some(*pos),
-        constraints: constraints.map_or(Constraints::None, Constraints::OfPart),
+        constraints: seams.of_part(id),
     }
 }

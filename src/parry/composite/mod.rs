@@ -18,6 +18,7 @@ use parry3d::shape::{Shape, ShapeType};
 mod compound;
 mod mesh;
 pub(crate) mod scene;
+pub(crate) mod seams;
 mod sub_manifolds;
 
 use crate::parry::operand;

@@ -29,9 +29,9 @@
 //! # What does not
 //! - `shape_type` is `Custom`, since downcasts such as `as_convex_polyhedron` find no
 //!   polyhedron but a `HullShape`. Match on `as_typed_shape` instead.
-//! - `CompoundFlags::FIX_INTERNAL_EDGES` smooths inner edges only between parts that parry can
-//!   downcast: `HullShape` parts keep their own normals. [`PreparedShapes`] puts plain hulls in their
-//!   place.
+//! - `CompoundFlags::FIX_INTERNAL_EDGES` smooths inner edges between `HullShape` parts with our
+//!   dispatcher, which welds corners with parry's default tolerance. With rapier's own they keep
+//!   their own normals: parry cannot downcast them. [`PreparedShapes`] puts plain hulls in their place.
 //! - Rounded borders are for plain hulls: use `SharedShape::round_convex_hull`.
 //!
 //! # Memory
@@ -154,6 +154,11 @@ impl HullShape {
     /// The prepared hull.
     pub fn hull(&self) -> &Hull {
         &self.inner.hull
+    }
+
+    /// What parry takes it for.
+    pub(crate) fn polyhedron(&self) -> &ConvexPolyhedron {
+        &self.inner.polyhedron
     }
 }
 
