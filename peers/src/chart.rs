@@ -12,8 +12,9 @@ const SIZE: (u32, u32) = (960, 420);
 const FONT: (&str, u32) = ("sans-serif", 15);
 const GRID: RGBColor = RGBColor(0xE6, 0xE6, 0xE6);
 /// From the palette of Okabe and Ito, whose colours the colour-blind can tell apart.
-const COLOURS: [RGBColor; 5] = [
+const COLOURS: [RGBColor; 6] = [
     RGBColor(0x00, 0x72, 0xB2),
+    RGBColor(0x56, 0xB4, 0xE9),
     RGBColor(0xD5, 0x5E, 0x00),
     RGBColor(0x00, 0x9E, 0x73),
     RGBColor(0xCC, 0x79, 0xA7),

@@ -7,7 +7,7 @@ mod jolt;
 #[cfg(feature = "physx")]
 mod physx;
 
-use isa_gjk::IsaGjkDispatcher;
+use isa_gjk::{IsaGjkDispatcher, PreparedShapes};
 use parry3d::math::{Pose, Real};
 use parry3d::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry3d::shape::SharedShape;
@@ -33,9 +33,18 @@ pub fn all(case: &Case) -> Vec<Box<dyn Engine>> {
         Box::new(Dispatched::new(
             "isa-gjk",
             IsaGjkDispatcher::default(),
-            case,
+            case.shapes.clone(),
         )),
-        Box::new(Dispatched::new("parry", DefaultQueryDispatcher, case)),
+        Box::new(Dispatched::new(
+            "isa-gjk, HullShape",
+            IsaGjkDispatcher::default(),
+            prepared(&case.shapes),
+        )),
+        Box::new(Dispatched::new(
+            "parry",
+            DefaultQueryDispatcher,
+            case.shapes.clone(),
+        )),
     ];
     #[cfg(feature = "box3d")]
     if let Some(box3d) = box3d::Box3d::new(case) {
@@ -48,6 +57,12 @@ pub fn all(case: &Case) -> Vec<Box<dyn Engine>> {
     engines
 }
 
+/// With their hulls built ahead, as the other engines' hulls are.
+fn prepared(shapes: &[SharedShape; 2]) -> [SharedShape; 2] {
+    let mut prepared = PreparedShapes::default();
+    shapes.each_ref().map(|shape| prepared.prepare(shape))
+}
+
 /// A dispatcher of parry's kind.
 struct Dispatched<D> {
     name: &'static str,
@@ -57,11 +72,11 @@ struct Dispatched<D> {
 }
 
 impl<D> Dispatched<D> {
-    fn new(name: &'static str, dispatcher: D, case: &Case) -> Self {
+    fn new(name: &'static str, dispatcher: D, shapes: [SharedShape; 2]) -> Self {
         Self {
             name,
             dispatcher,
-            shapes: case.shapes.clone(),
+            shapes,
             manifolds: Manifolds::new(),
         }
     }
