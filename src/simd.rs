@@ -1,6 +1,6 @@
 //! Four values at once: vectors coordinate by coordinate, and masks of lanes.
 
-use std::ops::{Add, Sub};
+use std::ops::{Add, Mul, Sub};
 
 use glam::{DVec3, Vec3};
 pub(crate) use wide::{f32x4, f32x8, f64x2, f64x4, u32x4, u64x4};
@@ -45,10 +45,25 @@ impl DVec3x4 {
         x * x + y * y + z * z
     }
 
+    /// All four together.
+    #[inline(always)]
+    pub fn sum(self) -> DVec3 {
+        DVec3::from(self.0.map(sum))
+    }
+
     #[inline(always)]
     pub fn to_f32x4(self) -> [f32x4; 3] {
         let [x, y, z] = self.0;
         [to_f32x4(x), to_f32x4(y), to_f32x4(z)]
+    }
+}
+
+impl Mul<f64x4> for DVec3x4 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn mul(self, by: f64x4) -> Self {
+        Self(self.0.map(|row| row * by))
     }
 }
 
@@ -80,6 +95,13 @@ impl Sub<DVec3> for DVec3x4 {
         let [x, y, z] = self.0;
         Self([x - other.x, y - other.y, z - other.z])
     }
+}
+
+/// In the same order on every machine.
+#[inline(always)]
+pub(crate) fn sum(four: f64x4) -> f64 {
+    let [a, b, c, d] = four.to_array();
+    (a + b) + (c + d)
 }
 
 #[inline(always)]

@@ -18,6 +18,15 @@ pub(crate) const GOOD_SEED: f64 = 1e-3;
 /// from the previous frame, and starting from the present features costs less.
 pub(crate) const MIN_GROWABLE: f64 = 0.9;
 
+/// If the two points of each contact are within this share of the smaller shape's radius of each other, across
+/// the normal, the shapes hardly moved, and the faces under the contacts are worth a test. A tenth of
+/// [`KEPT_DRIFT`](crate::tolerance::KEPT_DRIFT).
+pub(crate) const STILL: f64 = 2e-3;
+
+/// Contacts tie for the deepest if their distances differ by less than this share of the tolerance of a depth.
+/// Three that tie, and a far one, leave the place between them within the tolerance.
+pub(crate) const FLUSH_TIE: f64 = 0.25;
+
 /// Below this share of the radius, a depth is mostly less than the distance of the witness from the sides of
 /// its face, and the cheap proof is tried first. Chosen for hulls of 8 to 1,000 vertices.
 pub(crate) const SHALLOW: f64 = 0.1;

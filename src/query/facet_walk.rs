@@ -4,6 +4,7 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
+use super::certificate::flush::FlushFaces;
 use super::certificate::verdict::{FacetEdge, Verdict};
 use super::certificate::{facet, vertex_edge};
 use super::feature::{self, Feature};
@@ -20,11 +21,13 @@ use crate::support::{Polytope, VertexId};
 const MAX_WALK: usize = 10;
 
 /// The state of a walk.
-struct FacetWalk {
+struct FacetWalk<'f> {
     /// The features that span the current facet.
     features: [Feature; 2],
     /// The direction in which to look if these span no plane.
     normal: DVec3,
+    /// Faces that may prove the depth of the facet where the walk ends.
+    flush: Option<&'f FlushFaces>,
     /// The last side that was crossed.
     crossed: Option<[[VertexId; 2]; 2]>,
     steps_left: usize,
@@ -45,15 +48,20 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         facet::certify(self.cso, features, max, tolerance, self.cost)
     }
 
-    /// Answers with the facet of a remembered contact if its `verdict` allows that, and otherwise walks on
-    /// from there.
+    /// Answers with the facet of a remembered contact if its `verdict` allows that, or with flush faces.
+    /// Otherwise walks on from there.
     pub(super) fn start_walk_from_features(
         &mut self,
         normal: DVec3,
         features: [Feature; 2],
         verdict: &Verdict,
+        flush: Option<&FlushFaces>,
     ) -> Found {
+        if let Some(near) = flush.and_then(|flush| self.certify_flush(verdict, flush)) {
+            return Some((Answer::Near(near), Stage::Feature));
+        }
         let mut walk = self.start_walk(normal, features, Stage::Feature, Start::Warm);
+        walk.flush = flush;
         match self.step(verdict, &mut walk) {
             ControlFlow::Break(found) => found,
             ControlFlow::Continue(()) => self.run_walk(walk),
@@ -76,10 +84,11 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         features: [Feature; 2],
         stage: Stage,
         from: Start,
-    ) -> FacetWalk {
+    ) -> FacetWalk<'static> {
         FacetWalk {
             features,
             normal,
+            flush: None,
             crossed: None,
             steps_left: if self.skips_facet_walk() { 0 } else { MAX_WALK },
             stage,
@@ -87,7 +96,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
     }
 
-    fn run_walk(&mut self, mut walk: FacetWalk) -> Found {
+    fn run_walk(&mut self, mut walk: FacetWalk<'_>) -> Found {
         loop {
             let verdict = self.certify(walk.features);
             if let ControlFlow::Break(found) = self.step(&verdict, &mut walk) {
@@ -99,7 +108,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     /// Answers with the current facet, or with GJK and EPA where the walk ends. Otherwise goes to the next
     /// facet.
     #[inline(always)]
-    fn step(&mut self, verdict: &Verdict, walk: &mut FacetWalk) -> ControlFlow<Found> {
+    fn step(&mut self, verdict: &Verdict, walk: &mut FacetWalk<'_>) -> ControlFlow<Found> {
         let (next, ends) = match verdict {
             Verdict::Separated(apart) => {
                 return ControlFlow::Break(Some((Answer::Separated(*apart), walk.stage)));
@@ -108,7 +117,8 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
                 return ControlFlow::Break(Some((Answer::Near(*proximity), walk.stage)));
             }
             Verdict::Undecided(candidate) => {
-                return ControlFlow::Break(self.find_depth(candidate, walk.stage, walk.from));
+                let found = self.find_depth(candidate, walk.flush, walk.stage, walk.from);
+                return ControlFlow::Break(found);
             }
             Verdict::OutsideEdge(side) => self.cross_edge(side, walk),
             Verdict::NotSupporting(vertex, normal) => (
@@ -140,7 +150,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
 
     /// Crosses a side, unless that leads back.
     #[inline(always)]
-    fn cross_edge(&mut self, side: &FacetEdge, walk: &mut FacetWalk) -> NextFacet {
+    fn cross_edge(&mut self, side: &FacetEdge, walk: &mut FacetWalk<'_>) -> NextFacet {
         let [from, to] = side.ends;
         // The corners of a facet with a face of shape 2 turn the other way.
         let back = walk.crossed == Some([to, from]) || walk.crossed == Some([from, to]);

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::Query;
+use super::certificate::flush::FlushFaces;
 use super::certificate::verdict::Verdict;
 use super::feature::Feature;
 use super::gauss_map;
@@ -43,6 +44,11 @@ pub(crate) trait Sink {
         PairMemory::None
     }
 
+    /// The faces of contacts that hardly moved.
+    fn flush_faces(&mut self) -> Option<FlushFaces> {
+        None
+    }
+
     /// The bounding spheres are too far apart. No axis was computed.
     fn spheres_apart(&mut self);
 
@@ -72,8 +78,9 @@ pub(crate) trait Strategy<A: Support, B: Support>: Copy {
         normal: DVec3,
         features: [Feature; 2],
         verdict: &Verdict,
+        flush: Option<&FlushFaces>,
     ) -> Found {
-        let _ = (features, verdict);
+        let _ = (features, verdict, flush);
         query.search_along(self, normal)
     }
 
@@ -103,8 +110,9 @@ impl<A: Polytope, B: Polytope> Strategy<A, B> for Full {
         normal: DVec3,
         features: [Feature; 2],
         verdict: &Verdict,
+        flush: Option<&FlushFaces>,
     ) -> Found {
-        query.start_walk_from_features(normal, features, verdict)
+        query.start_walk_from_features(normal, features, verdict, flush)
     }
 
     /// Often, tilting the axis away from where the shapes come too near makes it separate. Otherwise the
@@ -208,7 +216,8 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
                     sink.near(near);
                     return Some(Stage::Feature);
                 }
-                strategy.start_from_features(self, normal, features, &verdict)
+                let flush = sink.flush_faces();
+                strategy.start_from_features(self, normal, features, &verdict, flush.as_ref())
             }
         };
         let (answer, stage) = found.as_ref()?;

@@ -1,5 +1,6 @@
 //! GJK and EPA, continuing from the cheaper stages.
 
+use super::certificate::flush::FlushFaces;
 use super::certificate::neighbors;
 use super::feature::{self, Feature};
 use super::pipeline::{Found, Start};
@@ -92,12 +93,21 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         })
     }
 
-    /// The depth. A polytope of a previous frame, or the adjacent facets, may prove that it is the
-    /// candidate's. Otherwise EPA expands a polytope from points near the candidate. If it finds the shapes
-    /// apart, GJK finds the distance.
-    pub(super) fn find_depth(&mut self, candidate: &Proximity, stage: Stage, from: Start) -> Found {
+    /// The depth. Faces that lie flush on each other, a polytope of a previous frame, or the adjacent facets may
+    /// prove that it is the candidate's. Otherwise EPA expands a polytope from points near the candidate. If it
+    /// finds the shapes apart, GJK finds the distance.
+    pub(super) fn find_depth(
+        &mut self,
+        candidate: &Proximity,
+        flush: Option<&FlushFaces>,
+        stage: Stage,
+        from: Start,
+    ) -> Found {
         let known = -candidate.signed_distance;
         debug_assert!(known >= 0.0, "they do not overlap: {candidate:?}");
+        if flush.is_some_and(|flush| self.is_depth(candidate, flush)) {
+            return Some((Answer::Near(*candidate), stage));
+        }
         if let Some((cache, key)) = &mut self.polytope_cache
             && cache.proves_depth(*key, self.cso, known, self.scratch, self.cost)
         {

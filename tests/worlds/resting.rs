@@ -4,7 +4,7 @@
 use std::collections::HashSet;
 use std::f32::consts::TAU;
 
-use isa_gjk::IsaGjkDispatcher;
+use isa_gjk::{IsaGjkDispatcher, Stage};
 use oorandom::Rand32;
 use rapier3d::prelude::*;
 use testkit::quality::{Observer, Quality};
@@ -87,6 +87,37 @@ fn towers_are_calm_when_every_contact_is_renewed() {
         let energy = world.kinetic_energy();
         assert!(energy < 3e-4, "{sides} sides: {energy} J");
         assert!(seen.drift < 8e-3, "{sides} sides: {} m", seen.drift);
+    }
+}
+
+/// Flat on each other, all corners of two bodies are about equally deep. Trembling decides which is the
+/// deepest, and the features of the previous frame still prove nearly every contact.
+#[test]
+fn what_rests_is_proved_by_the_contacts_that_it_has() {
+    for (scene, hulls, bodies) in [
+        (Scene::Wall, HullSource::Box, 36),
+        (Scene::Stack, HullSource::Prism { sides: 4 }, 16),
+        (Scene::Stack, HullSource::Prism { sides: 32 }, 16),
+        (Scene::Coins, HullSource::Prism { sides: 64 }, 32),
+    ] {
+        let params = SceneParams {
+            recycling: false,
+            can_sleep: false,
+            ..params(hulls, bodies)
+        };
+        let dispatcher = IsaGjkDispatcher::default();
+        let world = scenes::build(scene, &params, Some(dispatcher.clone()));
+        let mut world = world.expect("a valid scene");
+        (0..200).for_each(|_| world.step());
+        let before = dispatcher.stats();
+        (0..50).for_each(|_| world.step());
+        let answered = dispatcher.stats().since(&before).answered;
+        let kept = answered[Stage::Kept as usize];
+        let contacts: u64 = answered[Stage::Kept as usize..].iter().sum();
+        assert!(
+            10 * kept > 9 * contacts,
+            "{scene}: {kept} of {contacts} updates: {answered:?}"
+        );
     }
 }
 

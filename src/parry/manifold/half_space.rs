@@ -6,7 +6,7 @@ use super::sink::UpdateContacts;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch};
 use crate::pose::RelativePose;
-use crate::query::Proximity;
+use crate::query::{LastContacts, Proximity};
 use crate::support::Support;
 
 pub(super) struct HalfSpaceContacts<'a> {
@@ -18,14 +18,20 @@ pub(super) struct HalfSpaceContacts<'a> {
 
 impl UpdateContacts for HalfSpaceContacts<'_> {
     #[inline(always)]
+    fn pose(&self) -> Option<&RelativePose> {
+        Some(self.pose)
+    }
+
+    #[inline(always)]
     fn update_contacts<M, C: Default + Copy>(
         &mut self,
         manifold: &mut KernelManifold<'_, M, C>,
+        last: Option<&LastContacts>,
         near: &Proximity,
     ) -> bool {
         let (hull, pose) = (self.hull, self.pose);
         let normals = Normals::of(near, pose);
-        let is_kept = manifold.keep_contacts(near, pose, &normals, hull.radius());
+        let is_kept = manifold.keep_contacts(last, near, &normals, hull.radius());
         if !is_kept {
             let contacts =
                 manifold::half_space_contacts(hull, pose, near, self.max_distance, self.scratch);

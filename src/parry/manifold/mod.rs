@@ -1,6 +1,7 @@
 //! The contact manifold of two convex shapes, coherently.
 
 mod by_parry;
+mod flush;
 mod half_space;
 mod inherit;
 mod kept;
@@ -72,6 +73,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                 pos12: self.pos12,
                 scratch: &mut workspace.clip,
             },
+            last: None,
             is_kept: false,
         };
         let stage = query.run_into(Full, &mut sink).ok_or(Unsupported)?;
@@ -96,6 +98,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                 max_distance,
                 scratch: &mut workspace.clip,
             },
+            last: None,
             is_kept: false,
         };
         let mut cost = Cost::default();
@@ -121,6 +124,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
                 pair,
                 frame: AxisFrame::First,
                 contacts: NoContacts,
+                last: None,
                 is_kept: false,
             };
             let mut cost = Cost::default();

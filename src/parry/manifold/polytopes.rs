@@ -9,7 +9,8 @@ use super::sink::UpdateContacts;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch, Contacts};
 use crate::parry::constraints::{self, Constraints};
-use crate::query::{self, Proximity};
+use crate::pose::RelativePose;
+use crate::query::{self, FlushFaces, LastContacts, Proximity};
 use crate::support::{Cso, Polytope};
 use crate::tolerance::UNCORRECTED;
 
@@ -23,11 +24,25 @@ pub(super) struct PolytopeContacts<'a, 'c, B> {
 }
 
 impl<B: Polytope> UpdateContacts for PolytopeContacts<'_, '_, B> {
+    #[inline(always)]
+    fn pose(&self) -> Option<&RelativePose> {
+        Some(self.cso.pose)
+    }
+
+    fn flush_faces<M, C>(
+        &self,
+        manifold: &KernelManifold<'_, M, C>,
+        last: &LastContacts,
+    ) -> Option<FlushFaces> {
+        manifold.flush_faces(self.cso, last)
+    }
+
     /// Leaves the contacts where they are, if that is right, or chooses them anew.
     #[inline(always)]
     fn update_contacts<M, C: Default + Copy>(
         &mut self,
         manifold: &mut KernelManifold<'_, M, C>,
+        last: Option<&LastContacts>,
         near: &Proximity,
     ) -> bool {
         let normals = Normals::of(near, self.cso.pose);
@@ -37,9 +52,9 @@ impl<B: Polytope> UpdateContacts for PolytopeContacts<'_, '_, B> {
                 scratch: &mut *self.scratch,
                 ..*self
             };
-            return contacts.update_constrained(manifold, near, &normals);
+            return contacts.update_constrained(manifold, last, near, &normals);
         }
-        let is_kept = manifold.keep_contacts(near, self.cso.pose, &normals, self.cso.min_radius());
+        let is_kept = manifold.keep_contacts(last, near, &normals, self.cso.min_radius());
         if !is_kept {
             let contacts = manifold::contacts(self.cso, near, self.max_distance, self.scratch);
             manifold.set_contacts(normals.rounded, &contacts);
@@ -53,6 +68,7 @@ impl<B: Polytope> PolytopeContacts<'_, '_, B> {
     fn update_constrained<M, C: Default + Copy>(
         self,
         manifold: &mut KernelManifold<'_, M, C>,
+        last: Option<&LastContacts>,
         near: &Proximity,
         normals: &Normals,
     ) -> bool {
@@ -78,7 +94,7 @@ impl<B: Polytope> PolytopeContacts<'_, '_, B> {
                     })
             }
             Some(_) => {
-                if manifold.keep_contacts(near, cso.pose, normals, cso.min_radius()) {
+                if manifold.keep_contacts(last, near, normals, cso.min_radius()) {
                     return true;
                 }
                 Some(self.along_normal(near, normals))

@@ -21,7 +21,7 @@ use crate::map_pair::map_pair;
 use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
 use crate::pose::{RelativePose, is_unit};
-use crate::query::{ContactId, Feature, PairMemory};
+use crate::query::{ContactId, Feature, LastContacts, PairMemory};
 use crate::support::{Cso, Support, VertexId};
 use crate::tolerance::NEARLY_UNIT;
 
@@ -88,9 +88,9 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
         }
     }
 
-    /// What the previous frame left.
+    /// What the previous frame left. Of its contacts that is remembered which is deepest by now.
     #[inline(always)]
-    pub fn memory(&self) -> PairMemory {
+    pub fn memory(&self, last: Option<&LastContacts>) -> PairMemory {
         let (manifold, order) = (&*self.manifold, self.order);
         let stored = if order.is_reversed() && !manifold.points.is_empty() {
             manifold.local_n2
@@ -100,7 +100,11 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
         let Some(axis) = unit(stored) else {
             return PairMemory::None;
         };
-        match deepest(&manifold.points) {
+        let deepest = match last {
+            Some(last) => manifold.points.get(last.deepest(axis)),
+            None => deepest(&manifold.points),
+        };
+        match deepest {
             None => {
                 let n2 = manifold.local_n2;
                 // Casts saturate, and NaN becomes 0: any vector is some pair of vertices.
@@ -190,7 +194,7 @@ pub(super) fn pack(feature: Feature) -> PackedFeatureId {
 }
 
 #[inline]
-fn unpack(id: PackedFeatureId) -> Option<Feature> {
+pub(super) fn unpack(id: PackedFeatureId) -> Option<Feature> {
     Feature::from_code(id.0)
 }
 

@@ -5,15 +5,33 @@ use parry3d::query::ContactManifold;
 use super::record::{AxisFrame, KernelManifold};
 use crate::gjk::SeparatingAxis;
 use crate::parry::pair::Pair;
-use crate::query::{PairMemory, Proximity, Sink};
+use crate::pose::RelativePose;
+use crate::query::{FlushFaces, LastContacts, PairMemory, Proximity, Sink};
 use crate::stats::Stage;
 
 /// How shapes that are near each other get their contacts.
 pub(super) trait UpdateContacts {
-    /// Writes the contacts, and returns whether they stayed where they were.
+    /// Where the second shape is, if contacts may stay where they were.
+    fn pose(&self) -> Option<&RelativePose> {
+        None
+    }
+
+    /// The faces that the `last` contacts lie on, if these hardly moved.
+    fn flush_faces<M, C>(
+        &self,
+        manifold: &KernelManifold<'_, M, C>,
+        last: &LastContacts,
+    ) -> Option<FlushFaces> {
+        let _ = (manifold, last);
+        None
+    }
+
+    /// Writes the contacts, and returns whether they stayed where they were. The `last`
+    /// ones may.
     fn update_contacts<M, C: Default + Copy>(
         &mut self,
         manifold: &mut KernelManifold<'_, M, C>,
+        last: Option<&LastContacts>,
         near: &Proximity,
     ) -> bool;
 }
@@ -25,6 +43,7 @@ impl UpdateContacts for NoContacts {
     fn update_contacts<M, C: Default + Copy>(
         &mut self,
         _: &mut KernelManifold<'_, M, C>,
+        _: Option<&LastContacts>,
         _: &Proximity,
     ) -> bool {
         false
@@ -38,6 +57,8 @@ pub(super) struct ManifoldSink<'a, 'p, M, C, B, U> {
     pub pair: &'a Pair<'p, B>,
     pub frame: AxisFrame<'a>,
     pub contacts: U,
+    /// Those that the manifold has, once they are asked for.
+    pub last: Option<LastContacts>,
     pub is_kept: bool,
 }
 
@@ -66,7 +87,19 @@ where
 {
     #[inline(always)]
     fn memory(&mut self) -> PairMemory {
-        self.kernel_manifold().memory()
+        let manifold = KernelManifold::new(self.manifold, self.pair, self.frame);
+        if !manifold.manifold.points.is_empty()
+            && let Some(pose) = self.contacts.pose()
+        {
+            self.last = manifold.last_contacts(pose);
+        }
+        manifold.memory(self.last.as_ref())
+    }
+
+    #[inline]
+    fn flush_faces(&mut self) -> Option<FlushFaces> {
+        let manifold = KernelManifold::new(self.manifold, self.pair, self.frame);
+        self.contacts.flush_faces(&manifold, self.last.as_ref()?)
     }
 
     #[inline(always)]
@@ -82,6 +115,7 @@ where
     #[inline(always)]
     fn near(&mut self, near: &Proximity) {
         let mut manifold = KernelManifold::new(self.manifold, self.pair, self.frame);
-        self.is_kept = self.contacts.update_contacts(&mut manifold, near);
+        let last = self.last.as_ref();
+        self.is_kept = self.contacts.update_contacts(&mut manifold, last, near);
     }
 }

@@ -1,6 +1,7 @@
 //! Whether features still prove an answer at the present poses.
 
 pub(super) mod facet;
+pub(super) mod flush;
 pub(super) mod neighbors;
 mod polygon;
 pub(crate) mod verdict;

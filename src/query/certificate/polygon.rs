@@ -1,7 +1,7 @@
 //! A facet of the Minkowski difference as a polygon: whether the origin projects into it, and how deep the
 //! origin is in the pyramid beneath.
 
-use crate::simd::f32x4;
+use crate::simd::{LANES, f32x4};
 use glam::DVec3;
 
 use crate::map_pair::map_pair;
@@ -20,17 +20,50 @@ pub(in crate::query) fn inset(
     distance: f64,
 ) -> f64 {
     let count = shape.face_len(face);
+    inset_among(shape, face, count, |i| i, (normal, point, distance))
+}
+
+/// The same of a quadrilateral between corners of the face.
+#[inline]
+pub(in crate::query) fn inset_of_quadrilateral(
+    shape: &impl Polytope,
+    face: FaceId,
+    normal: DVec3,
+    point: DVec3,
+    distance: f64,
+) -> f64 {
+    let len = shape.face_len(face);
+    let count = len.min(LANES);
+    inset_among(
+        shape,
+        face,
+        count,
+        |i| i * len / count,
+        (normal, point, distance),
+    )
+}
+
+/// The same of so many corners of a face, which `numbered` gives.
+// perf: in a call the point would go through memory.
+#[inline(always)]
+fn inset_among(
+    shape: &impl Polytope,
+    face: FaceId,
+    count: usize,
+    numbered: impl Fn(usize) -> usize,
+    (normal, point, distance): (DVec3, DVec3, f64),
+) -> f64 {
     let (normal, at) = (normal.as_vec3(), point.as_vec3());
     let mut least = f32x4::splat(f32::INFINITY);
     let mut is_inside = f32x4::ZERO.simd_eq(f32x4::ZERO);
     for first in (0..count).step_by(4) {
         // After the last corner, the first ones come again.
         let number = |i: usize| {
-            if first + i < count {
+            numbered(if first + i < count {
                 first + i
             } else {
                 first + i - count
-            }
+            })
         };
         let [a, b, c, d] = shape.face_points_x4(face, [0, 1, 2, 3].map(number));
         let next = shape.vertex(shape.face_vertex(face, number(4))).as_vec3();

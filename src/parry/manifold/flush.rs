@@ -1,0 +1,76 @@
+//! The faces that a manifold's contacts lie on, and the features in contact between them.
+
+use glam::Vec3;
+use parry3d::query::TrackedContact;
+use parry3d::shape::PackedFeatureId;
+
+use super::record::{KernelManifold, pack, unpack};
+use crate::map_pair::map_pair;
+use crate::query::{ContactId, Feature, FlushFaces, LastContacts};
+use crate::support::{Cso, FaceId, Polytope};
+use crate::tuning::STILL;
+
+impl<M, C> KernelManifold<'_, M, C> {
+    /// The faces that the contacts lie on, if these hardly moved: those that a contact names, or else those beside
+    /// the features of the deepest.
+    pub fn flush_faces<A: Polytope, B: Polytope>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        last: &LastContacts,
+    ) -> Option<FlushFaces> {
+        let normals = [self.manifold.local_n1, self.manifold.local_n2];
+        let [n1, n2] = self.order.to_kernel(normals);
+        if !last.are_within(n1.as_dvec3(), STILL * cso.min_radius()) {
+            return None;
+        }
+        let points = &self.manifold.points;
+        let deepest = points.get(last.deepest(n1.as_dvec3()))?;
+        let face = |fid: fn(&TrackedContact<C>) -> PackedFeatureId| {
+            let mut ids = points.iter().map(fid);
+            let is_face = |id: &PackedFeatureId| matches!(unpack(*id), Some(Feature::Face(_)));
+            unpack(ids.find(is_face).unwrap_or(fid(deepest)))
+        };
+        let [f1, f2] = self.order.to_kernel([face(|c| c.fid1), face(|c| c.fid2)]);
+        Some(FlushFaces {
+            faces: [
+                face_of(cso.shape_1, f1?, n1)?,
+                face_of(cso.shape_2, f2?, n2)?,
+            ],
+            contacts: *last,
+        })
+    }
+
+    /// Leaves the features in contact to the next frame, with the deepest contact. They may be those of a corner
+    /// without a contact, hardly deeper than this one.
+    #[inline]
+    pub fn name_deepest(&mut self, deepest: usize, features: [Feature; 2]) {
+        let ids = self.order.to_caller(map_pair(features, pack));
+        let points = &mut self.manifold.points;
+        if [points[deepest].fid1, points[deepest].fid2] != ids {
+            rename(points, deepest, ids);
+        }
+    }
+}
+
+/// Gives a contact these features, unless another one has them, or they name no single place.
+#[inline(never)]
+fn rename<C>(contacts: &mut [TrackedContact<C>], contact: usize, ids: [PackedFeatureId; 2]) {
+    let [Some(f1), Some(f2)] = ids.map(unpack) else {
+        return;
+    };
+    let new = ContactId::new([f1, f2]);
+    let is_place = !matches!([f1, f2], [Feature::Face(_), Feature::Face(_)]);
+    if is_place && contacts.iter().all(|old| ContactId::of(old) != Some(new)) {
+        [contacts[contact].fid1, contacts[contact].fid2] = ids;
+    }
+}
+
+/// The face that a feature is, or that beside it which looks outwards most.
+fn face_of(shape: &impl Polytope, feature: Feature, outward: Vec3) -> Option<FaceId> {
+    let is_there = match feature {
+        Feature::Face(face) => shape.has_face(face),
+        Feature::Edge(edge) => shape.edge_ends(edge).is_some(),
+        Feature::Vertex(vertex) => shape.clamp_vertex(vertex) == vertex,
+    };
+    is_there.then(|| feature.face(shape, outward.as_dvec3()))
+}

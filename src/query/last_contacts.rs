@@ -1,0 +1,73 @@
+//! The contacts of the previous frame, where the shapes are by now.
+
+use glam::DVec3;
+
+use crate::pose::RelativePose;
+use crate::simd::{DVec3x4, LANES, f64x4, sum};
+
+/// Four contacts, some of which may be there twice. In frame 1.
+#[derive(Clone, Copy)]
+pub(crate) struct LastContacts {
+    /// Their points on shape 1.
+    on_1: DVec3x4,
+    /// From there to their points on shape 2.
+    between: DVec3x4,
+}
+
+impl LastContacts {
+    /// From the points on each shape in its own frame.
+    #[inline(always)]
+    pub fn new(on_1: DVec3x4, on_2: DVec3x4, pose: &RelativePose) -> Self {
+        Self {
+            on_1,
+            between: pose.points_to_1(on_2) - on_1,
+        }
+    }
+
+    /// Their distances along a normal.
+    #[inline(always)]
+    pub fn distances(&self, normal: DVec3) -> f64x4 {
+        self.between.dot(normal)
+    }
+
+    /// Whether the two points of each are at most this far apart across a normal.
+    #[inline(always)]
+    pub fn are_within(&self, normal: DVec3, drift: f64) -> bool {
+        let distances = self.distances(normal);
+        let squared = self.between.length_squared() - distances * distances;
+        // A drift that is not a number is too far.
+        squared.simd_le(f64x4::splat(drift * drift)).all()
+    }
+
+    /// The one that is deepest along a normal.
+    #[inline]
+    pub fn deepest(&self, normal: DVec3) -> usize {
+        first_least(self.distances(normal).to_array())
+    }
+
+    /// In the middle of them all, on shape 1.
+    pub fn middle(&self) -> DVec3 {
+        self.on_1.sum() / LANES as f64
+    }
+
+    /// In the middle of those that are deepest along a normal up to `tie`, on shape 1.
+    pub fn middle_of_deepest(&self, normal: DVec3, tie: f64) -> DVec3 {
+        let distances = self.distances(normal);
+        let array = distances.to_array();
+        let above = distances - array[first_least(array)];
+        let weights = f64x4::splat(1.0) / (above + tie);
+        (self.on_1 * weights).sum() / sum(weights)
+    }
+}
+
+/// The first of those that are least.
+#[inline]
+pub(crate) fn first_least(values: [f64; LANES]) -> usize {
+    let mut least = 0;
+    for lane in 1..LANES {
+        if values[lane] < values[least] {
+            least = lane;
+        }
+    }
+    least
+}
