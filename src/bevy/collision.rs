@@ -1,4 +1,4 @@
-//! Rapier's collision events, with entities in the place of colliders.
+//! rapier's collision events, with entities in place of colliders.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -9,10 +9,10 @@ use rapier3d::prelude::{
     SoftBodySet, SoftBodyTearEvent,
 };
 
-/// Two colliders began or ceased to touch, in the step just made.
+/// Two colliders began or ceased to touch in the last step.
 ///
-/// Every start has one stop, also when an entity is despawned: it is named in that message, though
-/// it is no more.
+/// Every start has one stop, even if an entity is despawned. That message then names an entity that no longer
+/// exists.
 ///
 /// ```
 /// use bevy_ecs::prelude::*;
@@ -34,9 +34,9 @@ use rapier3d::prelude::{
 /// ```
 #[derive(Message, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum CollisionEvent {
-    /// They touch; in the step before they did not.
+    /// They touch now, and did not in the step before.
     Started(Entity, Entity),
-    /// They touched in the step before, and do no more.
+    /// They touched in the step before, and no longer do.
     Stopped(Entity, Entity),
 }
 

@@ -11,9 +11,9 @@ use super::context::PhysicsContext;
 
 /// A rigid body as rapier's builder describes it; dynamic by default.
 ///
-/// The pose and the velocity of the builder are ignored: [`PhysicsTransform`] and [`Velocity`]
-/// have them. A change is applied at the next step, with forces reset and the body awake.
-/// Removing this component takes body and collider out of the rapier world.
+/// The pose and the velocity of the builder are ignored: [`PhysicsTransform`] and [`Velocity`] have them. A
+/// change is applied at the next step, with forces reset and the body awake. Removing this component removes
+/// body and collider from the rapier world.
 ///
 /// ```
 /// use isa_gjk::bevy::RigidBody;
@@ -79,8 +79,8 @@ impl From<SharedShape> for Collider {
 
 /// The pose of a body in the world: written after each step; your changes are applied before the next one.
 ///
-/// A changed pose is a teleport, but for bodies of the type `KinematicPositionBased`, which move
-/// to it within the next step. Its vector and quaternion are those of Bevy's `Transform`.
+/// A changed pose is a teleport, except for bodies of the type `KinematicPositionBased`, which move there
+/// within the next step. Its vector and quaternion are those of Bevy's `Transform`.
 ///
 /// ```
 /// use isa_gjk::bevy::PhysicsTransform;
@@ -92,9 +92,9 @@ impl From<SharedShape> for Collider {
 /// ```
 #[derive(Component, Clone, Copy, Debug, Default, PartialEq)]
 pub struct PhysicsTransform {
-    /// Where the origin of the body is, in metres.
+    /// The position of the body's origin, in metres.
     pub translation: Vector,
-    /// How the body is turned.
+    /// The rotation of the body.
     pub rotation: Rotation,
 }
 

@@ -1,4 +1,4 @@
-//! The rapier world as a resource, and which entity owns what in it.
+//! The rapier world as a resource, and the entities that own its bodies and colliders.
 
 use std::collections::HashMap;
 
@@ -49,9 +49,9 @@ pub struct PhysicsContext {
     dispatcher: IsaGjkDispatcher,
     entities: EntityHashMap<Handles>,
     owners: HashMap<ColliderHandle, Entity>,
-    /// Colliders whose last collisions the next step will end; until then they have an owner.
+    /// Removed colliders whose last collisions end in the next step. They have an owner until then.
     removed: Vec<ColliderHandle>,
-    /// When components were last written by us: what changed at another time, a user changed.
+    /// When we last wrote components. Anything that changed at another time was changed by the user.
     pub(super) written: Tick,
 }
 
@@ -96,8 +96,8 @@ impl PhysicsContext {
         context
     }
 
-    /// The dispatcher whose statistics are reported. Within a step it relies on shapes that do not
-    /// change. If you replace `world`, give this dispatcher to the narrow phase of the new one.
+    /// The dispatcher whose statistics are reported. Within a step it relies on unchanged shapes. If you
+    /// replace `world`, give this dispatcher to the narrow phase of the new one.
     pub fn dispatcher(&self) -> &IsaGjkDispatcher {
         &self.dispatcher
     }
@@ -133,7 +133,7 @@ impl PhysicsContext {
         self.dispatcher.stats()
     }
 
-    /// Inserts the body of an entity, or makes the one it has like a new one.
+    /// Inserts the body of an entity, or resets the existing one.
     pub(super) fn set_body(&mut self, entity: Entity, body: RigidBodyBuilder) {
         let built = body.build();
         if let Some(known) = self.body_mut(entity) {
@@ -143,13 +143,13 @@ impl PhysicsContext {
                 body: self.world.insert_body(built),
                 collider: None,
             };
-            // Its body was removed behind our back, and a collider with it.
+            // The user removed the body, and the collider with it.
             let lost = self.entities.insert(entity, handles);
             self.removed.extend(lost.and_then(|lost| lost.collider));
         }
     }
 
-    /// Inserts the collider of an entity with a body, or makes the one it has like a new one.
+    /// Inserts the collider of an entity with a body, or resets the existing one.
     pub(super) fn set_collider(&mut self, entity: Entity, collider: &ColliderBuilder) {
         let Some(handles) = self.entities.get_mut(&entity) else {
             return;
@@ -190,7 +190,7 @@ impl PhysicsContext {
         self.world.bodies.get_mut(handle)
     }
 
-    /// Steps the world and returns what began and ceased to touch.
+    /// Steps the world and returns the pairs that began or ceased to touch.
     pub(super) fn step(&mut self) -> Vec<CollisionEvent> {
         let recorder = CollisionRecorder::default();
         let world = &mut self.world;

@@ -11,7 +11,7 @@
 //!    [`CollisionEvent`]s, and updates [`NarrowPhaseStats`].
 //! 3. [`Writeback`](PhysicsSystems::Writeback) writes [`PhysicsTransform`] and [`Velocity`].
 //!
-//! What is despawned or removed leaves the rapier world at once. Lengths are metres, times
+//! Despawned entities and removed components leave the rapier world at once. Lengths are metres, times
 //! seconds, angles radians, as rapier has them; one run of the schedule is one step of
 //! `integration_parameters.dt`, a sixtieth of a second unless you change it.
 //!
@@ -38,10 +38,9 @@
 //! assert!(height < 2.0, "after a second it has come down from 5 m to {height} m");
 //! ```
 //!
-//! There is one collider for each body; for a body of several shapes use
-//! `SharedShape::compound`. Joints, queries and everything else of rapier are reached through
-//! [`PhysicsContext::world`]. Some types are called as rapier's are: import them by name, and they
-//! prevail over `rapier3d::prelude::*`.
+//! There is one collider for each body; for a body of several shapes use `SharedShape::compound`. Joints,
+//! queries and everything else of rapier are reached through [`PhysicsContext::world`]. Some types have the
+//! same names as rapier's: import them by name, and they take precedence over `rapier3d::prelude::*`.
 
 mod collision;
 mod components;

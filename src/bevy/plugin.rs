@@ -11,9 +11,9 @@ use super::systems::{NarrowPhaseStats, PhysicsSystems, add_systems, begin_instal
 
 /// Steps a [`PhysicsContext`] in `FixedPostUpdate`, by the time step of `Time<Fixed>`.
 ///
-/// The rest is as [`install`](super::install) has it, but that [`CollisionEvent`]s are kept as
-/// long as other messages of an `App` are. The associated constants name the diagnostics; the
-/// times are there with the feature `profiler` only. Each is that of the last step in its frame.
+/// The rest is the same as with [`install`](super::install), except that [`CollisionEvent`]s are kept as long
+/// as other messages of an `App`. The associated constants name the diagnostics; the times need the feature
+/// `profiler`. Each value is from the last step of its frame.
 ///
 /// ```
 /// use bevy_app::{App, TaskPoolPlugin};

@@ -34,15 +34,15 @@ use crate::stats::Stats;
 /// ```
 #[derive(SystemSet, Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum PhysicsSystems {
-    /// New and changed components go to rapier.
+    /// New and changed components are written to rapier.
     SyncBackend,
-    /// The rapier world makes its step.
+    /// The rapier world is stepped.
     StepSimulation,
-    /// Poses and velocities come back.
+    /// Poses and velocities are read back.
     Writeback,
 }
 
-/// What the dispatcher's queries have cost; nothing, with rapier's default narrow phase.
+/// The cost of the dispatcher's queries; zero with rapier's default narrow phase.
 ///
 /// ```
 /// use bevy_ecs::prelude::*;
@@ -68,14 +68,13 @@ pub struct NarrowPhaseStats {
 
 /// Adds the resources to `world` and the systems to `schedule`; each run of it is one step.
 ///
-/// A [`PhysicsContext`] that is there already is kept. A world is stepped by one schedule: a
-/// second call for the same world does nothing. [`CollisionEvent`]s can be read until the end of
-/// the step after their own.
+/// An existing [`PhysicsContext`] is kept. Only one schedule steps a world: a second call for the same world
+/// does nothing. [`CollisionEvent`]s can be read until the end of the step after their own.
 pub fn install(world: &mut World, schedule: &mut Schedule) {
     if !begin_install(world) {
         return;
     }
-    // Who has made them forgets them.
+    // The creator of the messages also drops old ones.
     if !world.contains_resource::<Messages<CollisionEvent>>() {
         world.init_resource::<Messages<CollisionEvent>>();
         schedule.add_systems(expire_messages.in_set(PhysicsSystems::SyncBackend));
@@ -151,7 +150,7 @@ fn sync(mut context: ResMut<PhysicsContext>, bodies: Query<BodyQuery<'_>, Anythi
     }
 }
 
-/// Moves a body as the user has moved its entity.
+/// Moves a body to where the user moved its entity.
 fn apply_user_changes(
     context: &mut PhysicsContext,
     entity: Entity,

@@ -1,11 +1,11 @@
-//! Faces beside the one in contact. Shapes that overlap far enough meet with these faces, too: a
-//! stone pressed into the ground has corners below it that no single face has.
+//! Faces beside the one in contact. Shapes that overlap far enough touch with these faces, too: a stone
+//! pressed into the ground has corners below the surface that belong to no single face.
 
 use super::contact_frame::{ContactFrame, FaceHeight};
 use crate::support::{FaceId, Polytope, VertexId};
 use crate::tuning::STEEPEST_BESIDE;
 
-/// Adds the planes of the faces beyond the sides of `face` that look at the other shape.
+/// Adds the planes of the adjacent faces of `face` that face the other shape.
 pub(super) fn add_planes(
     frame: &ContactFrame,
     shape: &impl Polytope,
@@ -13,7 +13,7 @@ pub(super) fn add_planes(
     sign: f32,
     planes: &mut Vec<FaceHeight>,
 ) {
-    // Of the two faces at an edge, the one that looks least along `face` is the other one.
+    // Of the two faces at an edge, the other one is that whose normal is farther from the normal of `face`.
     let behind = -shape.face_normal(face);
     let sides = 0..shape.face_len(face);
     let edges = sides.filter_map(|i| shape.face_edge(face, i));

@@ -1,7 +1,7 @@
 //! The contacts of two capsules, in closed form.
 //!
-//! Capsules that lie side by side touch along a line. One contact at its deepest point lets them turn
-//! about it, so they get one at both ends of the part that they have in common.
+//! Capsules that lie side by side touch along a line. With a single contact at the deepest point they could
+//! turn about it, so they get a contact at both ends of their common part.
 
 use glam::DVec3;
 
@@ -16,7 +16,7 @@ pub struct Capsule {
     pub radius: f64,
 }
 
-/// A contact, with its points on both surfaces on one line along the normal.
+/// A contact. Its points on both surfaces lie on one line along the normal.
 #[derive(Clone, Copy, Debug)]
 pub struct CapsuleContact {
     pub points: [DVec3; 2],
@@ -25,7 +25,7 @@ pub struct CapsuleContact {
     pub place: Place,
 }
 
-/// Where a contact is. The ends are in the order of the first capsule's axis.
+/// The place of a contact. The ends are in the order of the first capsule's axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     Deepest,
@@ -46,7 +46,7 @@ pub struct CapsuleContacts {
 }
 
 impl CapsuleContacts {
-    /// Those up to a distance; `None` if the capsules are farther apart.
+    /// The contacts up to a distance; `None` if the capsules are farther apart.
     pub fn new(capsules: [Capsule; 2], max_distance: f64) -> Option<Self> {
         let [first, second] = capsules;
         let radii = first.radius + second.radius;
@@ -98,7 +98,8 @@ impl Capsule {
         }
     }
 
-    /// How far along the unit vector `dir` a line through `p` leaves the capsule; `None` if it passes by.
+    /// How far along the unit vector `dir` a line through `p` leaves the capsule; `None` if the line misses
+    /// it.
     fn exit(&self, p: DVec3, dir: DVec3) -> Option<f64> {
         let axis = self.axis();
         let length = axis.length();
@@ -111,7 +112,7 @@ impl Capsule {
         if (0.0..=length).contains(&place) {
             return Some(t);
         }
-        // Beyond the side it leaves through one of the round ends.
+        // Beyond the side, the line leaves through a round end.
         let end = if place < 0.0 { self.a } else { self.b };
         larger_root(dir, p - end, self.radius)
     }
@@ -124,8 +125,8 @@ fn larger_root(step: DVec3, from: DVec3, radius: f64) -> Option<f64> {
     (a > 0.0 && discriminant >= 0.0).then(|| (discriminant.sqrt() - b) / a)
 }
 
-/// The nearest points of the cores (Ericson, *Real-Time Collision Detection*, 5.1.9). Of axes that are
-/// nearly parallel rounding spoils the common perpendicular; an end is as near then.
+/// The nearest points of the cores (Ericson, *Real-Time Collision Detection*, 5.1.9). If the axes are nearly
+/// parallel, rounding spoils their common perpendicular, but then an end is as near.
 fn nearest_on_cores(first: Capsule, second: Capsule) -> [DVec3; 2] {
     let (d1, d2) = (first.axis(), second.axis());
     let between = first.a - second.a;
@@ -153,8 +154,8 @@ fn nearest_on_cores(first: Capsule, second: Capsule) -> [DVec3; 2] {
     ends.into_iter().fold(inner, nearer)
 }
 
-/// The direction in which the capsules are nearest, or overlap least. Where the cores meet, every
-/// direction across both axes leads out after the sum of the radii.
+/// The direction in which the capsules are nearest, or overlap least. If the cores meet, every direction
+/// square to both axes leads out after the sum of the radii.
 fn normal(first: Capsule, second: Capsule, between: DVec3) -> DVec3 {
     let (d1, d2) = (first.axis(), second.axis());
     let size = d1.length() + d2.length() + first.radius + second.radius;
@@ -179,8 +180,8 @@ fn normal(first: Capsule, second: Capsule, between: DVec3) -> DVec3 {
     }
 }
 
-/// The contacts at the ends of the part that two capsules have in common, seen along the normal, if
-/// they lie side by side.
+/// The contacts at the ends of the common part of two capsules, seen along the normal, if they lie side by
+/// side.
 fn common_line(
     [first, second]: [Capsule; 2],
     normal: DVec3,
@@ -207,7 +208,7 @@ fn common_line(
     };
     let contact = |at: f64, place| {
         let (c1, c2) = (core(&first, at), core(&second, at));
-        // Between the axes in proportion to the radii the surfaces are nearest.
+        // Between the axes, in proportion to the radii, the surfaces are nearest.
         let offset = beside.dot(c2 - c1) * first.radius / radii;
         let on_line = c1 + beside * offset;
         let out = first.exit(on_line, normal)?;

@@ -1,14 +1,13 @@
-//! Intersection of two convex polygons in the plane, keeping track of what each corner is made of.
+//! Intersection of two convex polygons in the plane, with the origin of each corner.
 //!
-//! Each side of the window is a line that the other polygon crosses twice or not at all (Cyrus,
-//! Beck, *Generalized two- and three-dimensional clipping*, Computers & Graphics 3(1), 1978). So
-//! the heights of one polygon's corners over the other's sides show which of them are inside and
-//! where sides cross. The corners come in no order, and where the polygons' corners meet there may
-//! be two for one.
+//! Each side of the window lies on a line that the other polygon crosses twice or not at all (Cyrus, Beck,
+//! *Generalized two- and three-dimensional clipping*, Computers & Graphics 3(1), 1978). So the heights of one
+//! polygon's corners over the other's sides show which corners are inside and where sides cross. The corners
+//! of the result are in no particular order, and where corners of both polygons meet, one may occur twice.
 //!
-//! What is inside and what crosses is not predictable, and a branch that goes wrong costs more than
-//! all that is computed for four corners. So everything is computed in fours, for all corners that
-//! there can be, and then those that there are are gathered.
+//! It is not predictable which corners are inside and which sides cross, and a mispredicted branch costs more
+//! than all the arithmetic for four corners. So everything is computed in fours for all possible corners, and
+//! then the actual ones are gathered.
 
 use crate::simd::f32x4;
 
@@ -18,17 +17,17 @@ use super::sectors;
 use crate::simd::LANES;
 use crate::support::VertexId;
 
-/// With more pairs of sides than this, only near ones are compared.
+/// If there are more pairs of sides than this, only near ones are compared.
 const MANY: usize = 1200;
 
-/// Where a corner of the intersection comes from. Indices are into the polygons as given.
+/// The origin of a corner of the intersection. Indices are those of the given polygons.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum VertexOrigin {
     /// A corner of the clipped polygon.
     Subject(u16),
     /// A corner of the window.
     Window(u16),
-    /// A side of the window crossing a side of the clipped polygon.
+    /// The crossing of a side of the window and a side of the clipped polygon.
     Crossing(u16, u16),
     /// A vertex of the first or the second shape, of a face beside the one in contact.
     Beside(usize, VertexId),
@@ -39,11 +38,11 @@ pub(super) enum VertexOrigin {
 pub(super) struct Clipper {
     /// Counter-clockwise.
     pub window: PolygonRows,
-    /// Clockwise, as a second shape's face is seen; perhaps only the two ends of a line.
+    /// Clockwise, as a face of the second shape appears. It may be only the two ends of a line.
     pub subject: PolygonRows,
-    /// Of the last intersection.
+    /// The corners of the last intersection.
     pub corners: ClipVertices,
-    /// Vertices that were added to these.
+    /// Vertices that were added to the corners.
     beside: Vec<(usize, VertexId)>,
 }
 
@@ -61,7 +60,7 @@ impl Clipper {
         }
     }
 
-    /// Only near corners and sides are compared; `false` for polygons that are too thin for that.
+    /// Compares only near corners and sides. Returns `false` for polygons that are too thin for that.
     #[inline(never)]
     fn intersect_sectors(&mut self) -> bool {
         let is_area = self.window.count > 2 && self.subject.count > 2;
@@ -89,7 +88,7 @@ impl Clipper {
         self.corners.push_masked(there, 0, &x, &y);
     }
 
-    /// Gathers corners as they are found: of large polygons most are not there.
+    /// Gathers corners as they are found: in large polygons most possible corners do not exist.
     #[inline(never)]
     fn intersect_many(&mut self) {
         let Self {
@@ -101,7 +100,7 @@ impl Clipper {
         let width = subject.width();
         let subject_source = window.width() * width;
         let window_source = subject_source + width;
-        // A line of two corners has no side back, and no inside.
+        // A line of two corners has no side back and no interior.
         let is_line = subject.count == 2;
         for i in 0..window.count {
             let row = &window.rows()[i / LANES];
@@ -125,7 +124,8 @@ impl Clipper {
         }
     }
 
-    /// Adds a vertex of one shape at a place of the contact plane, if it is inside of the other's polygon.
+    /// Adds a vertex of one shape at a position in the contact plane, if that is inside the other shape's
+    /// polygon.
     pub fn add_beside(&mut self, side: usize, vertex: VertexId, [x, y]: [f32x4; 2]) {
         let is_inside = if side == 0 {
             self.subject.count > 2 && self.subject.rows().iter().all(|row| row.contains(x, y))
@@ -146,7 +146,7 @@ impl Clipper {
         window * subject + subject + window
     }
 
-    /// Where a corner of the intersection comes from.
+    /// The origin of a corner of the intersection.
     #[inline]
     pub fn origin(&self, corner: usize) -> VertexOrigin {
         let source = self.corners.sources[corner] as usize;
@@ -272,7 +272,7 @@ mod tests {
         sides.all(|(a, b)| (b - a).perp_dot(p - a) >= -slack * (b - a).length())
     }
 
-    /// All corners that the intersection can have, by trying every pair of sides.
+    /// All possible corners of the intersection, from every pair of sides.
     fn candidates(a: &[Vec2], b: &[Vec2]) -> Vec<DVec2> {
         let side = |p: &[Vec2], i: usize| [p[i], p[(i + 1) % p.len()]].map(|v| v.as_dvec2());
         let mut found: Vec<DVec2> = a.iter().chain(b).map(|v| v.as_dvec2()).collect();
@@ -280,7 +280,7 @@ mod tests {
             for j in 0..b.len() {
                 let ([p, p2], [q, q2]) = (side(a, i), side(b, j));
                 let (d, e) = (p2 - p, q2 - q);
-                // Where nearly parallel sides cross is anywhere.
+                // Nearly parallel sides may cross anywhere.
                 if d.perp_dot(e).abs() > 1e-4 * d.length() * e.length() {
                     found.push(p + d * ((q - p).perp_dot(e) / d.perp_dot(e)));
                 }
@@ -290,7 +290,7 @@ mod tests {
         found
     }
 
-    /// Corners on straight sides, as divided flat ends have: each side of an outline `times`.
+    /// Divides each side of an outline into `times` parts, like a divided flat end.
     fn divided(outline: &[Vec2], times: usize) -> Vec<Vec2> {
         let ends = outline.iter().cycle().skip(1);
         let along = |(a, b): (&Vec2, &Vec2)| {
@@ -300,8 +300,8 @@ mod tests {
         outline.iter().zip(ends).flat_map(along).collect()
     }
 
-    /// Polygons of many corners, which only near sides are compared of; thin ones, equal ones, and such
-    /// as have straight runs. No corner is missing that is found when all sides are compared.
+    /// Polygons of many corners, of which only near sides are compared: also thin and equal ones, and such
+    /// with straight runs. No corner is missing that is found by comparing all sides.
     #[test]
     fn near_sides_are_enough() {
         let mut rng = oorandom::Rand64::new(3);
@@ -348,7 +348,7 @@ mod tests {
             let is_found = |at: Vec2| near.iter().any(|other| other.0.distance(at) < 2e-6);
             let missing = all.iter().find(|corner| !is_found(corner.0));
             assert_eq!(missing, None, "round {round}");
-            // Far sides in a straight run may strike a corner by their rounding.
+            // Far sides in a straight run may reject a corner by rounding.
             subject.reverse();
             for (at, tag) in near {
                 let inside = |polygon| is_inside(at.as_dvec2(), polygon, 4e-6);
@@ -361,8 +361,8 @@ mod tests {
         assert!(by_sectors > 500, "only {by_sectors}");
     }
 
-    /// Against brute force in f64; also for equal polygons, and those that are turned or shifted by a
-    /// rounding; of few corners, which are one row, and of more.
+    /// Against brute force in f64. Includes equal polygons, and polygons that are turned or shifted by a
+    /// rounding, with few corners (one row) and with more.
     #[test]
     fn the_corners_are_those_of_the_intersection() {
         let mut rng = oorandom::Rand64::new(2);

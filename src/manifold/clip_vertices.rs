@@ -1,4 +1,4 @@
-//! The corners of an intersection, one after the other.
+//! The corners of an intersection, in a list.
 
 use crate::simd::f32x4;
 use glam::Vec2;
@@ -7,19 +7,19 @@ use super::polygon::PolygonRows;
 use crate::map_pair::map_pair;
 use crate::simd::LANES;
 
-/// Corners one after the other.
+/// A list of corners.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ClipVertices {
     x: Vec<f32>,
     y: Vec<f32>,
-    /// What they come from: crossings are numbered window side by window side, after them come the
-    /// corners of the subject, then those of the window, in whole rows each.
+    /// The source of each corner. Crossings are numbered first, window side by window side, then the corners
+    /// of the subject, and then the corners of the window, in whole rows each.
     pub sources: Vec<u32>,
     pub count: usize,
 }
 
 impl ClipVertices {
-    /// Becomes those of a polygon.
+    /// Copies the corners of a polygon.
     pub fn set(&mut self, polygon: &PolygonRows) {
         self.count = 0;
         for (r, row) in polygon.rows().iter().enumerate() {
@@ -27,7 +27,7 @@ impl ClipVertices {
         }
     }
 
-    /// Adds those of some rows whose bits are set; the first one of the first row has the number
+    /// Adds the corners of some rows whose bits are set. The first corner of the first row has the number
     /// `source`.
     #[inline(always)]
     pub fn push_masked<const ROWS: usize>(
@@ -63,7 +63,7 @@ impl ClipVertices {
         self.count += 1;
     }
 
-    /// Makes room for at least this many, in fours, as they are read.
+    /// Makes room for at least this many corners. They are read in fours.
     #[cold]
     fn grow(&mut self, count: usize) {
         let room = (2 * count).next_multiple_of(LANES);
@@ -72,7 +72,7 @@ impl ClipVertices {
         self.sources.resize(room, 0);
     }
 
-    /// Where they are, in fours.
+    /// The positions, in fours.
     #[inline(always)]
     pub fn fours(&self) -> impl Iterator<Item = [f32x4; 2]> {
         let rows = self.count.div_ceil(LANES);
@@ -82,7 +82,7 @@ impl ClipVertices {
         x.zip(y).map(|(&x, &y)| [x.into(), y.into()])
     }
 
-    /// Where one of them is.
+    /// The position of a corner.
     #[inline(always)]
     pub fn at(&self, corner: usize) -> Vec2 {
         Vec2::new(self.x[corner], self.y[corner])

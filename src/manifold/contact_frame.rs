@@ -1,4 +1,4 @@
-//! The contact plane: as each shape sees it, and faces over it.
+//! The contact plane as each shape sees it, and the heights of faces over it.
 
 use crate::simd::f32x4;
 use glam::{DVec3, Vec2, Vec3};
@@ -38,8 +38,8 @@ impl ContactFrame {
         }
     }
 
-    /// The plane of a face whose outward normal is along the contact normal, times `sign`; none if it is
-    /// seen from behind or edge-on.
+    /// The plane of a face whose outward normal is along the contact normal times `sign`. `None` if the face
+    /// is seen from behind or edge-on.
     #[inline(always)]
     pub fn plane(&self, shape: &impl Polytope, face: FaceId, sign: f32) -> Option<FaceHeight> {
         let (outward, offset) = self.plane_beyond_origin(shape, face, sign)?;
@@ -52,8 +52,8 @@ impl ContactFrame {
         })
     }
 
-    /// The outward normal of a face, and how far beyond the origin its plane is. A segment has that of
-    /// its planes which leans least against the contact normal; a point has none.
+    /// The outward normal of a face, and how far beyond the origin its plane is. For a segment, it is the
+    /// plane that leans least against the contact normal; a point has none.
     #[inline(always)]
     fn plane_beyond_origin(
         &self,
@@ -89,11 +89,11 @@ impl ContactFrame {
     }
 }
 
-/// Between a shape's space and the contact plane, in f32: beside the witness coordinates are small, and
+/// Maps between a shape's frame and the contact plane, in f32. Near the witness, coordinates are small, and
 /// errors are no larger than those of f32 vertices.
 pub(super) struct PlaneProjection {
-    /// The plane's origin in two parts: what f32 holds of it, and the rest. So what is near loses
-    /// nothing where the shape is large.
+    /// The plane's origin in two parts: rounded to f32, and the rest. So nearby points lose no digits even if
+    /// the shape is large.
     origin: Vec3,
     rest: Vec3,
     normal: Vec3,
@@ -101,7 +101,7 @@ pub(super) struct PlaneProjection {
 }
 
 impl PlaneProjection {
-    /// Four points into the plane, coordinate by coordinate.
+    /// Projects four points into the plane, coordinate by coordinate.
     #[inline(always)]
     pub fn flatten(&self, points: [Vec3; LANES]) -> [f32x4; 2] {
         let [a, b, c, d] = points;
@@ -112,7 +112,7 @@ impl PlaneProjection {
         map_pair(self.axes, |axis| x * axis.x + y * axis.y + z * axis.z)
     }
 
-    /// The points over places in the plane.
+    /// The points at some heights over positions in the plane.
     #[inline(always)]
     pub fn points(&self, x: f32x4, y: f32x4, height: f32x4) -> [f32x4; 3] {
         let [u, v] = self.axes;
@@ -143,7 +143,7 @@ impl FaceHeight {
         at.x * self.slope.x + at.y * self.slope.y + self.base
     }
 
-    /// The tangent squared of its angle to the contact plane.
+    /// The squared tangent of the angle to the contact plane.
     #[inline(always)]
     pub fn slope_squared(&self) -> f32 {
         self.slope.length_squared()

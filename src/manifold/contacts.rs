@@ -1,4 +1,4 @@
-//! Up to four contacts, coordinate by coordinate: so they are made and written four at a time.
+//! Up to four contacts, stored coordinate by coordinate, so that four are computed at once.
 
 use crate::simd::f32x4;
 use glam::{DVec3, Vec3};
@@ -7,7 +7,7 @@ use crate::pose::RelativePose;
 use crate::query::{Feature, Proximity};
 use crate::simd::LANES;
 
-/// More points than this add no stiffness to a rigid contact.
+/// More points than these add no stiffness to a rigid contact.
 pub const MAX_POINTS: usize = LANES;
 
 /// One contact: a point on each shape, on a line along the manifold's normal.
@@ -17,9 +17,9 @@ pub struct ContactPoint {
     pub on_1: Vec3,
     /// On the second shape, in frame 2.
     pub on_2: Vec3,
-    /// From the first to the second along the normal: negative where the shapes overlap.
+    /// From the first to the second point along the normal; negative where the shapes overlap.
     pub distance: f32,
-    /// What meets there.
+    /// The features that meet there.
     pub features: [Feature; 2],
 }
 
@@ -34,7 +34,7 @@ pub struct Contacts {
 }
 
 impl Contacts {
-    /// One by one.
+    /// The contacts, one by one.
     pub fn iter(&self) -> impl Iterator<Item = ContactPoint> {
         let point = |of: &[f32x4; 3], lane: usize| Vec3::from(of.map(|row| row.to_array()[lane]));
         (0..self.len).map(move |lane| ContactPoint {
@@ -45,7 +45,7 @@ impl Contacts {
         })
     }
 
-    /// The witness alone.
+    /// The witness as the only contact.
     pub fn witness(proximity: &Proximity, pose: &RelativePose) -> Self {
         let splat = |p: DVec3| p.as_vec3().to_array().map(f32x4::splat);
         Self {

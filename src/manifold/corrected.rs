@@ -12,10 +12,9 @@ use crate::support::{Cso, FaceId, Polytope, VertexId};
 use crate::tolerance::SAME_DEPTH;
 use crate::tuning::{ABSURD_DEPTH, SAME_POINT};
 
-/// The contacts along another `normal` than the query's, nearer than `max_distance`: corners of the
-/// patch between the two faces that look along `normal` most. The query's features do not matter:
-/// they lie beside these faces wherever the correction is large. `None` if one of the faces is
-/// edge-on to `normal`.
+/// The contacts along another `normal` than the query's, nearer than `max_distance`: corners of the patch
+/// between the faces whose normals are nearest to `normal`. The query's features are not used: if the
+/// correction is large, they lie beside these faces. `None` if one of the faces is edge-on to `normal`.
 pub fn contacts_along<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     proximity: &Proximity,
@@ -54,7 +53,7 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
     Some(patch.contacts(cso, witness, (clipper, candidates), &selection))
 }
 
-/// Of the faces at the extreme vertex in direction `dir`, the one that looks along it most.
+/// The face at the extreme vertex in direction `dir` whose normal is nearest to `dir`.
 fn extreme_face(shape: &impl Polytope, dir: DVec3, start: VertexId) -> FaceId {
     let (_, vertex) = shape.support(dir, start, &mut Cost::default());
     shape.face_at_vertex(vertex, dir)

@@ -13,9 +13,10 @@ use crate::simd::{DVec3x4, LANES, f64x4, to_f32x4};
 use crate::support::{FaceId, Polytope};
 use crate::tuning::{EDGE_ON, SAME_POINT};
 
-/// The contacts of a polytope with the half-space in front of its deepest vertex, the witness of
-/// `proximity`: with it corners of the face around it. Of more corners than there is room for those that
-/// span most, first among those nearer than `max_distance`. `pose` is that of the half-space.
+/// The contacts of a polytope with the half-space in front of its deepest vertex, which is the witness of
+/// `proximity`: this vertex, and other corners of a face around it. If there are too many corners, it chooses
+/// those that span the largest area, first among those nearer than `max_distance`. `pose` is the pose of the
+/// half-space.
 pub fn half_space_contacts(
     shape: &impl Polytope,
     pose: &RelativePose,

@@ -1,12 +1,11 @@
 //! The contact manifold: the two faces in contact, clipped against each other and reduced to
 //! four points.
 //!
-//! A face with neighbours that lie nearly in its plane is taken together with them. Both are
-//! projected along the contact normal onto one plane, where their polygons are intersected as
-//! wholes. Every corner of the intersection is a contact: its points lie on the two surfaces, on
-//! one line along the normal. Shapes that are pressed into each other have further contacts, at
-//! corners of the faces beside these. The witness of the query always stays, first in the list; so
-//! the manifold's deepest point is the query's answer.
+//! If a face has neighbours that lie nearly in its plane, they are taken together. Both surfaces are
+//! projected along the contact normal onto one plane, where their polygons are intersected. Every corner of
+//! the intersection is a contact: its points lie on the two surfaces, on one line along the normal. Shapes
+//! that are pressed into each other have further contacts, at corners of the adjacent faces. The witness of
+//! the query is always kept, first in the list, so the manifold's deepest point is the query's answer.
 
 mod beside;
 pub(crate) mod capsules;
@@ -39,8 +38,8 @@ pub use half_space::half_space_contacts;
 pub use outline::{PatchCorner, contact_polygon};
 pub use scratch::ClipScratch;
 
-/// The contacts around the witness of a query along its normal: those nearer than `max_distance`
-/// first, then the nearest of the others, which a solver needs for what moves fast.
+/// The contacts around the witness of a query along its normal: those nearer than `max_distance` first, then
+/// the nearest of the others, which a solver needs for fast bodies.
 pub fn contacts<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     proximity: &Proximity,
@@ -86,8 +85,8 @@ fn choose(
     let same = SAME_POINT * scale as f32;
     let summary = candidates.set(corners, distances, range, same);
     let mut first = None;
-    // Over two faces the distance is linear, so a corner is deepest. A witness that is no corner
-    // and no deeper (somewhere inside of two parallel faces) must not take a corner's place.
+    // The distance of two faces is linear, so a corner is deepest. A witness that is not a corner and not
+    // deeper (somewhere inside two parallel faces) must not take a corner's place.
     if !summary.at_origin
         && let Some(deepest) = summary.deepest
         && f64::from(candidates.distance(deepest)) <= least + SAME_DEPTH * scale
@@ -139,7 +138,7 @@ mod tests {
         }
     }
 
-    /// Whichever polygon is the window: one inside of the other, and both overhanging.
+    /// Whichever polygon is the window: one inside the other, and both overhanging.
     #[test]
     fn contacts_lie_on_the_features_they_name() {
         for (sides, radii) in [

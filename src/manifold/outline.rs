@@ -1,4 +1,4 @@
-//! The whole region of contact, as a polygon: where both faces are over each other, and near enough.
+//! The whole region of contact, as a polygon: where both faces lie over each other and are near enough.
 
 use glam::{DVec3, Vec2};
 
@@ -14,9 +14,9 @@ use crate::support::{Cso, Polytope};
 pub struct PatchCorner {
     /// On the first shape, in frame 1.
     pub on_1: DVec3,
-    /// To the second shape along the normal.
+    /// The distance to the second shape along the normal.
     pub distance: f64,
-    /// What meets there.
+    /// The features that meet there.
     pub features: [Feature; 2],
 }
 
@@ -30,9 +30,9 @@ struct Corner {
 
 #[derive(Clone, Copy)]
 enum Origin {
-    /// Of the intersection of the two faces.
+    /// A corner of the intersection of the two faces.
     Clip(usize),
-    /// Where the surfaces get too far apart, between these two.
+    /// Where the surfaces become too far apart, between these two corners.
     Cut([usize; 2]),
 }
 
@@ -78,7 +78,7 @@ impl SurfacePair<'_> {
         DVec3::from(points.map(|row| f64::from(row.to_array()[0])))
     }
 
-    /// What meets at a place on a side of one shape's polygon, or inside of both.
+    /// The features that meet at a position on a side of one shape's polygon, or inside both.
     fn features_on_side<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
@@ -113,9 +113,8 @@ fn distance(patch: &SurfacePair<'_>, at: Vec2) -> f32 {
     distances.to_array()[0]
 }
 
-/// The corners around their hull, counter-clockwise (Andrew, *Another efficient algorithm for convex
-/// hulls in two dimensions*, Information Processing Letters 9(5), 1979). Corners that are there twice come
-/// once.
+/// The convex hull of the corners, counter-clockwise (Andrew, *Another efficient algorithm for convex hulls
+/// in two dimensions*, Information Processing Letters 9(5), 1979). Repeated corners are dropped.
 fn outline(mut corners: Vec<Corner>) -> Vec<Corner> {
     corners.sort_by(|a, b| (a.at.x.total_cmp(&b.at.x)).then(a.at.y.total_cmp(&b.at.y)));
     corners.dedup_by(|a, b| a.at == b.at);
@@ -136,7 +135,7 @@ fn outline(mut corners: Vec<Corner>) -> Vec<Corner> {
         }
         around.push(*corner);
     }
-    // The first one again.
+    // This is the first one again.
     around.pop();
     around
 }
@@ -169,7 +168,7 @@ fn cut(patch: &SurfacePair<'_>, corners: &[Corner], max_distance: f32) -> Vec<Co
     kept
 }
 
-/// The side of one of the two polygons that holds both corners: the shape, and the number of the side.
+/// The side of a polygon that contains both corners: the shape, and the number of the side.
 fn common_side(ends: [VertexOrigin; 2], clipper: &Clipper) -> Option<(usize, usize)> {
     let counts = [clipper.window.count, clipper.subject.count];
     let [a, b] = ends.map(|end| sides(end, counts));
@@ -178,7 +177,7 @@ fn common_side(ends: [VertexOrigin; 2], clipper: &Clipper) -> Option<(usize, usi
         .find(|side| b.contains(&Some(*side)))
 }
 
-/// The sides that a corner is on.
+/// The sides on which a corner lies.
 fn sides(origin: VertexOrigin, counts: [usize; 2]) -> [Option<(usize, usize)>; 2] {
     let around = |shape: usize, i: u16| {
         let (i, count) = (usize::from(i), counts[shape]);

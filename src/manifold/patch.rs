@@ -13,20 +13,20 @@ use crate::simd::{LANES, lane_mask};
 use crate::support::{Cso, FaceId, Polytope};
 use crate::tuning::LEVEL_SLOPE;
 
-/// The surface of one shape: the face in contact, or all faces of the cluster that it belongs to, or
-/// those beside it.
+/// The surface of one shape: the face in contact, alone or with all faces of its cluster, or with the faces
+/// beside it.
 pub(super) struct ContactSurface<'s> {
-    /// Of the face or around the cluster.
+    /// The face, or the outline of the cluster.
     polygon: FaceId,
     plane: FaceHeight,
-    /// Those of the other faces.
+    /// The planes of the other faces.
     more: &'s mut Vec<FaceHeight>,
-    /// Of the outward normal along the contact normal.
+    /// The sign of the outward normal along the contact normal.
     sign: f32,
 }
 
 impl<'s> ContactSurface<'s> {
-    /// That around `face` over the contact plane; none if the face is seen edge-on.
+    /// The surface around `face` over the contact plane; `None` if the face is seen edge-on.
     #[inline(always)]
     fn new(
         frame: &ContactFrame,
@@ -40,10 +40,10 @@ impl<'s> ContactSurface<'s> {
         let mut polygon = face;
         if let Some((outline, faces)) = shape.cluster(face) {
             let others = faces.iter().map(|&other| FaceId::from(other));
-            // Slivers have no plane, and what they cover others do.
+            // Slivers have no plane. Other faces cover their area.
             let mut others =
                 others.filter(|&other| other != face && shape.face_normal(other) != DVec3::ZERO);
-            // A cluster that turns edge-on has corners over which no plane has a height.
+            // A cluster that is nearly edge-on has corners over which no plane has a height.
             let is_level = plane.slope_squared() < LEVEL_SLOPE * LEVEL_SLOPE;
             let is_whole = others.all(|other| {
                 let other = frame.plane(shape, other, sign);
@@ -64,7 +64,7 @@ impl<'s> ContactSurface<'s> {
         })
     }
 
-    /// Of planes around a convex shape, the innermost is the surface.
+    /// The surface of a convex shape is the innermost of its planes.
     #[inline(always)]
     pub fn heights(&self, x: f32x4, y: f32x4) -> f32x4 {
         let mut heights = self.plane.heights(x, y);
@@ -75,7 +75,7 @@ impl<'s> ContactSurface<'s> {
         heights
     }
 
-    /// The face that the surface is in one place.
+    /// The face of the surface at a position.
     #[inline(always)]
     pub fn face_at(&self, at: Vec2) -> FaceId {
         let mut height = self.plane.height(at);
@@ -92,7 +92,7 @@ impl<'s> ContactSurface<'s> {
 
 /// Both surfaces over the contact plane.
 pub(super) struct SurfacePair<'s> {
-    /// From the spaces of both shapes.
+    /// The projections from the frames of both shapes.
     pub(super) projections: [PlaneProjection; 2],
     pub(super) surfaces: [ContactSurface<'s>; 2],
 }
@@ -136,8 +136,8 @@ impl<'s> SurfacePair<'s> {
         clipper.intersect();
     }
 
-    /// Takes the faces beside those in contact into both surfaces, and adds their corners inside of the
-    /// other shape to those of the intersection. Returns whether there are any.
+    /// Adds the faces beside those in contact to both surfaces, and their corners inside the other shape to
+    /// the intersection. Returns whether there are any such corners.
     #[cold]
     #[inline(never)]
     pub fn widen<A: Polytope, B: Polytope>(
@@ -153,7 +153,7 @@ impl<'s> SurfacePair<'s> {
         clipper.corners.count > count
     }
 
-    /// The same for one shape. A cluster has all its corners.
+    /// Widens the surface of one shape. A cluster already has all its corners.
     fn widen_side(
         &mut self,
         side: usize,
@@ -176,15 +176,14 @@ impl<'s> SurfacePair<'s> {
         }
     }
 
-    /// From the first surface to the second.
+    /// The distances from the first surface to the second.
     #[inline(always)]
     pub fn distances(&self, x: f32x4, y: f32x4) -> f32x4 {
         self.surfaces[1].heights(x, y) - self.surfaces[0].heights(x, y)
     }
 
-    /// The contacts at the chosen corners of the intersection, where the surfaces are as far apart as they
-    /// were measured to be, but not less than `least`. The witness is where `features` meet, at that
-    /// distance.
+    /// The contacts at the chosen corners of the intersection, with the measured distances between the
+    /// surfaces, but at least `least`. The witness is where `features` meet, at the distance `least`.
     #[inline(always)]
     pub fn contacts<A: Polytope, B: Polytope>(
         &self,
@@ -223,7 +222,7 @@ impl<'s> SurfacePair<'s> {
         }
     }
 
-    /// What meets at a corner of the intersection.
+    /// The features that meet at a corner of the intersection.
     #[inline(always)]
     pub fn features<A: Polytope, B: Polytope>(
         &self,

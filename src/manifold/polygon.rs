@@ -5,24 +5,24 @@ use glam::Vec2;
 
 use crate::tolerance::CLIP_SLACK;
 
-/// A polygon; its last row is filled up with its first corner.
+/// A polygon. Its last row is filled up with its first corner.
 #[derive(Clone, Debug)]
 pub(super) struct PolygonRows {
     pub count: usize,
-    /// There may be more than it has, and there is always one.
+    /// The rows. There is always one, and there may be more than are in use.
     rows: Vec<Row>,
 }
 
-/// Four corners, and the sides from each of them to the next. Those of what fills up have no length.
+/// Four corners, and the sides from each of them to the next. The sides of padding have no length.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     pub x: f32x4,
     pub y: f32x4,
     along_x: f32x4,
     along_y: f32x4,
-    /// How far below the sides still counts as inside, as heights that are multiplied by their lengths.
+    /// How far below the sides still counts as inside. Heights are multiplied by the lengths of the sides.
     slack: f32x4,
-    /// Which corners are inside of all of the other polygon's sides so far.
+    /// Which corners are inside all sides of the other polygon so far.
     pub inside: f32x4,
 }
 
@@ -36,7 +36,7 @@ impl Default for PolygonRows {
 }
 
 impl PolygonRows {
-    /// Becomes a polygon with this number of corners, which `corners` gives four at a time.
+    /// Sets the polygon to this number of corners, which `corners` returns four at a time.
     #[inline(always)]
     pub fn set(&mut self, count: usize, corners: impl Fn([usize; LANES]) -> [f32x4; 2]) {
         self.count = count;
@@ -49,7 +49,7 @@ impl PolygonRows {
         self.rows[0] = row;
     }
 
-    /// Apart from the one row that most polygons are, which is then made without a loop.
+    /// Separate from the single row that most polygons have, so that this needs no loop.
     #[inline(never)]
     fn set_many(&mut self, corners: &dyn Fn([usize; LANES]) -> [f32x4; 2]) {
         let rows = self.count.div_ceil(LANES);
@@ -103,7 +103,7 @@ impl PolygonRows {
         }
     }
 
-    /// The bits of the corners of a row that are not padding.
+    /// The bits of a row's corners, without padding.
     #[inline(always)]
     pub fn vertex_mask(&self, row: usize) -> u32 {
         first_lanes(self.count - LANES * row)
@@ -120,7 +120,7 @@ impl Row {
         inside: f32x4::ZERO,
     };
 
-    /// Without sides.
+    /// A row without sides.
     #[inline(always)]
     fn new([x, y]: [f32x4; 2]) -> Self {
         let inside = lane_mask(ALL);
@@ -137,7 +137,7 @@ impl Row {
         Vec2::new(self.x.to_array()[0], self.y.to_array()[0])
     }
 
-    /// The sides, of which the last one ends at `next`.
+    /// Computes the sides. The last one ends at `next`.
     #[inline(always)]
     fn add_sides(&mut self, next: Vec2) {
         let along = |row: f32x4, next: f32| {
@@ -146,18 +146,18 @@ impl Row {
         };
         self.along_x = along(self.x, next.x);
         self.along_y = along(self.y, next.y);
-        // The sum of coordinates is not shorter.
+        // The sum of coordinates is at least the length.
         let length = self.along_x.abs() + self.along_y.abs();
         self.slack = (length + self.x.abs() + self.y.abs()) * length * CLIP_SLACK;
     }
 
-    /// Whether a point is inside of these sides of a clockwise polygon.
+    /// Whether a point is inside these sides of a clockwise polygon.
     #[inline(always)]
     pub fn contains(&self, x: f32x4, y: f32x4) -> bool {
         self.heights(x, y).simd_ge(-self.slack).all()
     }
 
-    /// The same for a counter-clockwise polygon.
+    /// Whether a point is inside these sides of a counter-clockwise polygon.
     #[inline]
     pub fn contains_as_window(&self, x: f32x4, y: f32x4) -> bool {
         self.heights(x, y).simd_le(self.slack).all()
@@ -175,12 +175,12 @@ impl Row {
 pub(super) struct Line {
     pub at: Vec2,
     pub along: Vec2,
-    /// How far below it still counts as inside, as a height that is multiplied by its length.
+    /// How far below the side still counts as inside. Heights are multiplied by the length of the side.
     pub slack: f32,
 }
 
 impl Line {
-    /// How far left of it a point is, multiplied by its length.
+    /// How far left of the side a point is, multiplied by its length.
     #[inline(always)]
     pub fn height(&self, p: Vec2) -> f32 {
         self.along.perp_dot(p - self.at)
@@ -195,7 +195,7 @@ impl Line {
             return None;
         }
         let at = from + other.along * (heights[0] / (heights[0] - heights[1]));
-        // Along this side, from 0 to its length squared.
+        // The position along this side, from 0 to its squared length.
         let place = at.dot(self.along);
         let end = self.along.length_squared() + self.slack;
         (place >= -self.slack && place <= end).then_some(self.at + at)
@@ -211,7 +211,7 @@ pub(super) struct EdgeLanes {
     slack: f32x4,
 }
 
-/// Where sides cross: those with bits.
+/// Crossings with a row of sides. Only lanes whose bits are set count.
 pub(super) struct Crossings {
     pub x: f32x4,
     pub y: f32x4,
@@ -219,7 +219,7 @@ pub(super) struct Crossings {
 }
 
 impl EdgeLanes {
-    /// That of a corner in a row.
+    /// The lane of a corner in a row.
     #[inline(always)]
     pub fn new(row: &Row, lane: usize) -> Self {
         let of_lane = |row: &f32x4| f32x4::splat(row.as_array()[lane]);
@@ -232,8 +232,8 @@ impl EdgeLanes {
         }
     }
 
-    /// Strikes the other polygon's corners below this side from those inside, and tells where its sides
-    /// cross this one.
+    /// Marks the other polygon's corners below this side as outside, and returns where its sides cross this
+    /// one.
     #[inline(always)]
     pub fn clip_row(&self, other: &mut Row) -> Crossings {
         let (from_x, from_y) = (other.x - self.x, other.y - self.y);
@@ -245,7 +245,7 @@ impl EdgeLanes {
         let share = from / (from - to);
         let x = from_x + other.along_x * share;
         let y = from_y + other.along_y * share;
-        // Along the side, from 0 to its length squared.
+        // The position along the side, from 0 to its squared length.
         let place = x * self.along_x + y * self.along_y;
         let end = self.along_x * self.along_x + self.along_y * self.along_y + self.slack;
         let on_side = place.simd_ge(-self.slack) & place.simd_le(end);

@@ -1,4 +1,4 @@
-//! Which corners of the contact patch to keep. They are looked at in fours.
+//! The choice of the corners of the contact patch that become contacts, in fours.
 
 use std::ops::RangeInclusive;
 
@@ -12,21 +12,21 @@ use crate::simd::{LANES, f32x4, first_lanes, lane_mask, u32x4};
 /// Corners to choose from, by their numbers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Candidates {
-    /// There may be more than are in use.
+    /// The rows. There may be more than are in use.
     fours: Vec<CandidateRow>,
     rows: usize,
 }
 
-/// Four corners; some of the last ones are none.
+/// Four corners. The last ones may be padding.
 #[derive(Clone, Copy, Debug, Default)]
 struct CandidateRow {
     x: f32x4,
     y: f32x4,
-    /// From the first face to the second, along the contact normal.
+    /// The distance from the first face to the second, along the contact normal.
     distance: f32x4,
-    /// A mask of those within the wanted range.
+    /// A mask of the corners within the wanted range.
     near: f32x4,
-    /// A mask of those beyond it.
+    /// A mask of the corners beyond it.
     beyond: f32x4,
 }
 
@@ -34,11 +34,11 @@ struct CandidateRow {
 pub(super) struct CandidateSummary {
     /// The corner where the faces are nearest or overlap most.
     pub deepest: Option<usize>,
-    /// Whether one is at the origin of the contact plane.
+    /// Whether a corner is at the origin of the contact plane.
     pub at_origin: bool,
 }
 
-/// The ids of the corners in a row. They count from 1: the id 0 is that of no corner.
+/// The ids of the corners in a row. They count from 1; the id 0 means no corner.
 #[inline(always)]
 fn ids(row: usize) -> u32x4 {
     u32x4::splat((LANES * row) as u32) + u32x4::new([1, 2, 3, 4])
@@ -51,9 +51,9 @@ fn corner(greatest: ArgMax4<f32x4>) -> Option<usize> {
 }
 
 impl Candidates {
-    /// Becomes these corners, with the `distances` of a row at its places. Corners within
-    /// `range` are candidates, farther ones are fallbacks, nearer ones are dropped. One that is nearer
-    /// than `same` to the origin counts as being there.
+    /// Takes the corners, and computes the `distances` of each row. Corners within `range` are candidates,
+    /// farther ones are fallbacks, and nearer ones are dropped. A corner nearer than `same` to the origin
+    /// counts as being there.
     #[inline(always)]
     pub fn set(
         &mut self,
@@ -95,14 +95,14 @@ impl Candidates {
         self.fours[..self.rows].iter()
     }
 
-    /// The distance of the faces at a corner; some number where there is none.
+    /// The distance of the faces at a corner; some number if there is no such corner.
     #[inline(always)]
     pub fn distance(&self, corner: usize) -> f32 {
         let four = self.fours.get(corner / LANES);
         four.map_or(0.0, |four| four.distance.as_array()[corner % LANES])
     }
 
-    /// The nearest of the corners beyond the range, which is then no longer among them.
+    /// Removes and returns the nearest of the corners beyond the range.
     #[inline(always)]
     pub fn pop_beyond_range(&mut self) -> Option<usize> {
         let mut nearest = ArgMax4::new(f32::NEG_INFINITY);
@@ -128,7 +128,7 @@ impl Candidates {
             return [None; MAX_POINTS - 1];
         };
         let line = corners.at(far) - first;
-        // Areas over the line are heights times its length.
+        // The areas over the line are heights times its length.
         let least = same * line.length();
         let [mut left, mut right] = [ArgMax4::new(least), ArgMax4::new(least)];
         for (row, four) in self.fours().enumerate() {
@@ -137,7 +137,7 @@ impl Candidates {
             right.update_where(four.near, -area, ids(row));
         }
         match (corner(left), corner(right)) {
-            // A patch on one side of the line: the last corner adds most area to the triangle.
+            // If the patch is on one side of the line, the last corner adds most area to the triangle.
             (Some(side), None) | (None, Some(side)) => {
                 let apex = corners.at(side) - first;
                 let third = self.arg_max(first, least, |x, y| added_area(x, y, line, apex));
@@ -147,7 +147,7 @@ impl Candidates {
         }
     }
 
-    /// The corner with the greatest measure above `least`; its place is that from `first`.
+    /// The corner with the greatest measure above `least`. Its position is relative to `first`.
     #[inline(always)]
     fn arg_max(
         &self,
@@ -164,8 +164,8 @@ impl Candidates {
     }
 }
 
-/// Twice the area that points add to the triangle of the origin, `a` and `b` beyond one of its two
-/// edges at `b`.
+/// Twice the area that points add to the triangle of the origin, `a` and `b`, beyond one of its two edges at
+/// `b`.
 #[inline(always)]
 fn added_area(x: f32x4, y: f32x4, a: Vec2, b: Vec2) -> f32x4 {
     // Positive beyond the edges, if the triangle is counter-clockwise.
@@ -176,7 +176,7 @@ fn added_area(x: f32x4, y: f32x4, a: Vec2, b: Vec2) -> f32x4 {
     beyond_ab.fast_max(beyond_bo)
 }
 
-/// Which corners of the contact patch become contacts; `None` is the witness of the query.
+/// The corners of the contact patch that become contacts. `None` is the witness of the query.
 #[derive(Default)]
 pub(super) struct Selection {
     pub corners: [Option<usize>; MAX_POINTS],
@@ -194,7 +194,7 @@ impl Selection {
         self.len += 1;
     }
 
-    /// Their numbers, and others that mean nothing.
+    /// The numbers of the corners. Unused entries mean nothing.
     #[inline(always)]
     pub fn numbers(&self) -> [usize; MAX_POINTS] {
         let [a, b, c, d] = self.corners;
@@ -206,7 +206,7 @@ impl Selection {
         ]
     }
 
-    /// The nearest of those beyond reach, while there is room.
+    /// Adds the nearest corners beyond the range while there is room.
     #[inline(always)]
     pub fn fill_up(&mut self, candidates: &mut Candidates) {
         while self.len < MAX_POINTS
@@ -216,7 +216,7 @@ impl Selection {
         }
     }
 
-    /// Adds those that are not `None`, without branches: which ones is not predictable.
+    /// Adds the corners that are not `None`. It has no branches, since it is not predictable which these are.
     #[inline(always)]
     pub fn push_all(&mut self, corners: [Option<usize>; MAX_POINTS - 1]) {
         for corner in corners {

@@ -1,9 +1,9 @@
 //! Intersection of two convex polygons of many corners, in time linear in them.
 //!
-//! Around a point inside of a polygon, each of its sides has a sector. As one goes around the other
-//! polygon, the sectors follow each other, forth or back: a corner need only be compared with the side
-//! of its sector, and a side with those of the sectors from its one end to its other. Where
-//! rounding chooses among neighbouring sectors, the sides beside count as well.
+//! Around a point inside a polygon, each side has a sector. On the way around the other polygon, the sectors
+//! follow each other, forwards or backwards. So a corner need only be compared with the side of its sector,
+//! and a side only with the sides of the sectors between its ends. Where rounding decides between
+//! neighbouring sectors, the adjacent sides are compared as well.
 
 use glam::Vec2;
 
@@ -11,24 +11,24 @@ use super::clip_vertices::ClipVertices;
 use super::polygon::{Line, PolygonRows};
 use crate::tolerance::CLEARLY_BESIDE;
 
-/// The sectors of a polygon, and the one that was entered last.
+/// The sectors of a polygon, and the current one.
 struct Sectors<'p> {
     polygon: &'p PolygonRows,
     center: Vec2,
-    /// 1 if it is counter-clockwise, -1 if it is clockwise.
+    /// 1 if the polygon is counter-clockwise, -1 if it is clockwise.
     turn: f32,
     at: usize,
-    /// From the centre to both ends of the present sector's side.
+    /// From the centre to both ends of the current sector's side.
     ends: [Vec2; 2],
 }
 
-/// Where a point lies as to a polygon.
+/// The location of a point relative to a polygon.
 #[derive(Clone, Copy, PartialEq)]
 enum Inclusion {
     Inside,
-    /// Beyond the side of its sector.
+    /// Outside the side of its sector.
     Outside,
-    /// By less than rounding may be.
+    /// Nearer to the border than rounding.
     OnBorder,
 }
 
@@ -68,14 +68,14 @@ impl<'p> Sectors<'p> {
         self.ends = [sector, self.after(sector, 1)].map(|corner| self.spoke(corner));
     }
 
-    /// Whether the present sector has a point.
+    /// Whether the current sector contains a point.
     fn contains(&self, p: Vec2) -> bool {
         let dir = p - self.center;
         let [from, to] = self.ends;
         from.perp_dot(dir) * self.turn >= 0.0 && dir.perp_dot(to) * self.turn > 0.0
     }
 
-    /// Goes to the sector of a point. In the centre any is as good.
+    /// Goes to the sector of a point. For the centre, any sector will do.
     fn enter(&mut self, p: Vec2) {
         for sector in (0..self.polygon.count).rev() {
             self.set(sector);
@@ -85,8 +85,8 @@ impl<'p> Sectors<'p> {
         }
     }
 
-    /// Goes on to the sector of `q` as one goes straight from `p`, the point of the present one. The
-    /// sectors on the way, with one more at both ends: the first, and how many there are.
+    /// Goes to the sector of `q` on the straight way from `p`, which is in the current sector. Returns the
+    /// first sector on the way and their number, with one more at both ends.
     fn follow(&mut self, p: Vec2, q: Vec2) -> (usize, usize) {
         let count = self.polygon.count;
         let start = self.at;
@@ -107,7 +107,7 @@ impl<'p> Sectors<'p> {
         (self.after(first, count - 1), (steps + 3).min(count))
     }
 
-    /// Where a point of the present sector lies.
+    /// The location of a point in the current sector.
     fn place(&self, p: Vec2) -> Inclusion {
         let side = self.polygon.side(self.at);
         let height = side.height(p) * self.turn;
@@ -120,7 +120,7 @@ impl<'p> Sectors<'p> {
         }
     }
 
-    /// Whether a point of the present sector, which is in some place, counts as inside.
+    /// Whether a point in the current sector with this location counts as inside.
     fn is_inside(&self, p: Vec2, place: Inclusion) -> bool {
         let beside = [self.polygon.count - 1, 0, 1];
         let mut sides = beside
@@ -134,8 +134,8 @@ impl<'p> Sectors<'p> {
     }
 }
 
-/// Adds the corners of the intersection to `corners`, unless a polygon is too thin for sectors: then
-/// the answer is `false`. Their sources are those of [`Clipper`](super::clip::Clipper).
+/// Adds the corners of the intersection to `corners`. Returns `false` if a polygon is too thin for sectors.
+/// Sources are numbered as in [`Clipper`](super::clip::Clipper).
 pub(super) fn intersect(
     window: &PolygonRows,
     subject: &PolygonRows,
@@ -160,7 +160,7 @@ pub(super) fn intersect(
         let start = place;
         let (first, count) = of_window.follow(side.at, end);
         place = of_window.place(end);
-        // What begins and ends inside stays inside, and what stays beyond one side is outside.
+        // A side that begins and ends inside is inside, and a side that stays outside one side is outside.
         let is_inside = start == Inclusion::Inside && place == Inclusion::Inside;
         let is_outside =
             start == Inclusion::Outside && beyond.height(end) < -CLEARLY_BESIDE * beyond.slack;
@@ -186,7 +186,7 @@ pub(super) fn intersect(
     true
 }
 
-/// The centre of a polygon's area.
+/// The centroid of a polygon.
 fn center(polygon: &PolygonRows) -> Option<Vec2> {
     let origin: Line = polygon.side(0);
     let (mut area, mut moment) = (0.0, Vec2::ZERO);

@@ -1,4 +1,4 @@
-//! Manifolds of two capsules. Parry's routine makes one contact of them, so logs never lie still.
+//! Manifolds of two capsules. parry's routine finds only one contact, with which logs never rest.
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, TrackedContact, Unsupported};
@@ -9,7 +9,7 @@ use crate::map_pair::map_pair;
 use crate::parry::pair::valid_pose;
 use crate::pose::RelativePose;
 
-/// Brings the manifold of two capsules up to date; other shapes are not supported.
+/// Updates the manifold of two capsules. Other shapes are not supported.
 pub(crate) fn update_capsules<M, C: Default + Copy>(
     pos12: &Pose,
     shapes: [&dyn Shape; 2],
@@ -44,13 +44,13 @@ pub(crate) fn update_capsules<M, C: Default + Copy>(
             data: data[contact.place as usize],
         }
     };
-    // In the memory that they have: a pair at rest allocates nothing.
+    // Reuses the memory of the points, so that a pair at rest allocates nothing.
     manifold.points.clear();
     manifold.points.extend(contacts.iter().map(tracked));
     Ok(())
 }
 
-/// What a contact is called on both capsules.
+/// The feature id of a contact, on both capsules.
 fn id_of(place: Place) -> PackedFeatureId {
     match place {
         Place::Deepest => PackedFeatureId::edge(0),
@@ -59,7 +59,7 @@ fn id_of(place: Place) -> PackedFeatureId {
     }
 }
 
-/// The data of the old contact in this place.
+/// The data of the old contact at this place.
 fn inherited<C: Default + Copy>(contacts: &[TrackedContact<C>], place: Place) -> C {
     let id = id_of(place);
     let is_same = |old: &&TrackedContact<C>| old.fid1 == id && old.fid2 == id;
@@ -69,7 +69,7 @@ fn inherited<C: Default + Copy>(contacts: &[TrackedContact<C>], place: Place) ->
         .map_or_else(C::default, |old| old.data)
 }
 
-/// A capsule that is solid: finite, with a radius. A shape of a user's own may only look like one.
+/// The shape as a capsule, if it is finite and has a radius. A user's own shape may only look like a capsule.
 fn plain_capsule(shape: &dyn Shape) -> Option<Capsule> {
     let capsule: &ParryCapsule = shape.as_shape()?;
     let [a, b] = [capsule.segment.a, capsule.segment.b].map(|p| p.as_dvec3());

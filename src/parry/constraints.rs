@@ -10,8 +10,8 @@ use crate::stats::Cost;
 use crate::support::{Cso, Support};
 use crate::tolerance::{GRAZING, UNCORRECTED};
 
-/// What corrects the normals of a part's contacts. Computing it may cost more than finding out that
-/// there is no contact.
+/// The constraints that correct the normals of a part's contacts. Computing them may cost more than finding
+/// that there is no contact.
 #[derive(Clone, Copy)]
 pub(crate) enum Constraints<'a> {
     None,

@@ -1,5 +1,5 @@
-//! Shapes of parry's beside hulls, as the kernels know them; `None` for what they cannot know, because
-//! it has no extent or is not finite.
+//! Converts parry's shapes other than hulls for the kernels. `None` for shapes without extent, or that are
+//! not finite.
 
 use glam::DVec3;
 use parry3d::math::Real;
@@ -26,9 +26,9 @@ pub(crate) fn half_space(half_space: &ParryHalfSpace) -> Option<HalfSpace> {
     })
 }
 
-/// A shape of parry's with a curved surface.
+/// A shape of parry with a curved surface.
 pub(crate) trait CurvedShape {
-    /// As the kernels know it; `None` if it has no volume.
+    /// The shape for the kernels; `None` if it has no volume.
     fn kernel(&self) -> Option<impl Support>;
 }
 
@@ -46,7 +46,7 @@ impl CurvedShape for ParryCone {
     }
 }
 
-/// `None` for a box that is a segment or a point: it has no faces with a plane.
+/// `None` for a box that is only a segment or a point: none of its faces has a plane.
 #[inline]
 pub(crate) fn cuboid(cuboid: &Cuboid) -> Option<CuboidPolytope> {
     let half_extents = cuboid.half_extents.as_dvec3();
@@ -56,7 +56,7 @@ pub(crate) fn cuboid(cuboid: &Cuboid) -> Option<CuboidPolytope> {
     (thin.bitmask().count_ones() < 2).then(|| CuboidPolytope::new(with_thickness))
 }
 
-/// A length that tolerances can be relative to.
+/// A length to which tolerances can be relative.
 pub(crate) fn positive(length: Real) -> Option<f64> {
     (length > 0.0 && length.is_finite()).then(|| length.into())
 }

@@ -17,7 +17,7 @@ pub(crate) fn run_into(
     sink: &mut impl Sink,
     cost: &mut Cost,
 ) -> Stage {
-    // All hulls of a world are in a pair with its ground, and most of them end here.
+    // Every hull of a world is in a pair with its ground, and most of these pairs end here.
     if is_sphere_apart(pair, pose, max_distance) {
         sink.spheres_apart();
         return Stage::BoundingSpheres;

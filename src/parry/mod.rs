@@ -1,4 +1,4 @@
-//! The plug into rapier and parry: which shapes are ours, their manifolds, and queries of scenes.
+//! The interface to rapier and parry: which shapes are ours, their manifolds, and scene queries.
 
 mod capsules;
 mod composite;

@@ -1,4 +1,4 @@
-//! The shapes of a pair, and where a hull among them is prepared.
+//! The shapes of a pair, and where their prepared hulls are.
 
 use parry3d::math::Real;
 use parry3d::shape::{ConvexPolyhedron, RoundConvexPolyhedron, Shape, ShapeType};
@@ -17,9 +17,9 @@ pub(crate) struct HullHandle<'a> {
 
 #[derive(Clone, Copy)]
 enum HullLocation<'a> {
-    /// The shape brings it along.
+    /// The shape contains it.
     Own(&'a Hull),
-    /// It was prepared for the shape.
+    /// The hull cache has it.
     Found(HullRef),
 }
 
@@ -33,7 +33,7 @@ impl<'a> HullHandle<'a> {
     }
 }
 
-/// A hull among parry's shapes.
+/// A shape of parry that is a hull.
 #[derive(Clone, Copy)]
 enum HullSource<'a> {
     /// With a rounded border of this radius.
@@ -42,7 +42,7 @@ enum HullSource<'a> {
 }
 
 impl<'a> HullSource<'a> {
-    /// By the type that it is: what a user's shape shows as its typed shape may be a likeness only.
+    /// This goes by the concrete type: the typed shape of a user's own shape may only be similar.
     #[inline]
     fn of(shape: &'a dyn Shape) -> Option<Self> {
         if let Some(hull) = shape.as_shape() {
@@ -59,7 +59,7 @@ impl<'a> HullSource<'a> {
     }
 }
 
-/// Whether a shape is a hull to us, so that pairs with it are ours to answer.
+/// Whether a shape is a hull, so that we answer its pairs.
 pub(crate) fn is_hull(shape: &dyn Shape) -> bool {
     HullSource::of(shape).is_some()
 }
@@ -83,7 +83,7 @@ impl<'a> Operand<'a> {
         self.hull.is_some()
     }
 
-    /// Whether it may consist of parts. Of most shapes it is known at once that they do not.
+    /// Whether it may consist of parts. For most shapes this is quickly ruled out.
     #[inline]
     pub fn may_be_composite(&self) -> bool {
         use ShapeType::{Compound, Custom, HeightField, Polyline, TriMesh, Voxels};

@@ -2,7 +2,7 @@
 
 use crate::pose::{RelativePose, ValidPose};
 
-/// Which of the caller's shapes comes first here. The kernels have the hull first, and the routines for
+/// Which of the caller's shapes comes first here. The kernels expect the hull first, and the routines for
 /// composites the shape with parts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum PairOrder {
@@ -20,13 +20,13 @@ impl PairOrder {
         self == Self::Reversed
     }
 
-    /// From the order here to the caller's.
+    /// Converts from the order here to the caller's.
     #[inline]
     pub fn to_caller<T>(self, [a, b]: [T; 2]) -> [T; 2] {
         if self.is_reversed() { [b, a] } else { [a, b] }
     }
 
-    /// From the caller's order to that here.
+    /// Converts from the caller's order to the order here.
     #[inline]
     pub fn to_kernel<T>(self, caller: [T; 2]) -> [T; 2] {
         self.to_caller(caller)

@@ -1,4 +1,4 @@
-//! From parry's shapes to polytopes that the kernels can work on.
+//! Converts parry's shapes to polytopes for the kernels.
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::Unsupported;
@@ -23,18 +23,18 @@ pub(crate) struct Pair<'a, B> {
     pub other: &'a B,
     /// The radii of the rounded borders around them.
     pub border_radii: [f64; 2],
-    /// The hull is the second of the shapes that were asked about.
+    /// Which of the caller's shapes the hull is.
     pub order: PairOrder,
 }
 
 impl<'a, B> Pair<'a, B> {
-    /// Of the other shape, from that of the shapes asked about.
+    /// The pose of the other shape in the hull's frame, from the caller's pose.
     #[inline(always)]
     pub fn pose(&self, pos12: ValidPose<'_>) -> RelativePose {
         self.order.pose(pos12)
     }
 
-    /// Without borders.
+    /// The Minkowski difference without borders.
     #[inline(always)]
     pub fn cso<'c>(&self, pose: &'c RelativePose) -> Cso<'c, Hull, B>
     where
@@ -47,29 +47,29 @@ impl<'a, B> Pair<'a, B> {
         }
     }
 
-    /// Up to this distance they touch. `size` is that of both without borders.
+    /// The distance up to which the shapes touch. `size` is the size of both without borders.
     #[inline(always)]
     pub fn touching(&self, size: f64) -> f64 {
         MIN_DIRECTED_DISTANCE * (size + self.border_radii[0] + self.border_radii[1])
     }
 
-    /// How far apart they are without borders, if with them they are as far apart as this, or touch at
-    /// that distance. `size` is that of both without borders.
+    /// The distance of the cores, if the shapes with their borders have this distance, or touch at that
+    /// distance. `size` is the size of both without borders.
     #[inline(always)]
     pub fn core_distance(&self, distance: Real, size: f64) -> f64 {
         f64::from(distance) + self.border_radii[0] + self.border_radii[1] + self.touching(size)
     }
 }
 
-/// A pose that the kernels can work with.
+/// The pose, if the kernels can work with it.
 #[inline(always)]
 pub(crate) fn valid_pose(pos12: &Pose) -> Result<ValidPose<'_>, Unsupported> {
     ValidPose::new(pos12).ok_or(Unsupported)
 }
 
-/// Something to do with a pair.
+/// An operation on a pair.
 pub(crate) trait PairVisitor: Sized {
-    /// What comes of it; what is [`Unsupported`] is left to parry.
+    /// The result. [`Unsupported`] pairs are left to parry.
     type Answer;
 
     /// Whether it answers half-spaces.
@@ -95,8 +95,8 @@ pub(crate) trait PairVisitor: Sized {
         Err(Unsupported)
     }
 
-    /// The other shape is a cylinder or a cone, which has no faces for our kernels; for parry's routines
-    /// it has `features`.
+    /// The other shape is a cylinder or a cone, which has no faces for our kernels. parry's routines use its
+    /// `features`.
     fn visit_curved<B: Support>(
         &mut self,
         pair: &Pair<'_, B>,
@@ -108,7 +108,7 @@ pub(crate) trait PairVisitor: Sized {
     }
 }
 
-/// Visits the pair if one of its shapes is a hull and the other one known.
+/// Visits the pair if one of its shapes is a hull and the other is known.
 #[inline]
 pub(crate) fn visit<V: PairVisitor>(
     shape_1: &dyn Shape,
@@ -119,7 +119,7 @@ pub(crate) fn visit<V: PairVisitor>(
     visit_operands(operands, Epoch::of_pair(), visitor)
 }
 
-/// As [`visit`], for shapes that are unchanged during `epoch`.
+/// Like [`visit`], for shapes that do not change during `epoch`.
 // perf: in a call the operands would go through memory, which pairs that are apart notice.
 #[inline(always)]
 pub(crate) fn visit_operands<V: PairVisitor>(
@@ -155,7 +155,7 @@ pub(crate) fn visit_operands<V: PairVisitor>(
     }
 }
 
-/// Why a pair with a hull is not ours.
+/// Why a pair with a hull is left to the fallback.
 #[cold]
 pub(crate) fn why_left(pos12: &Pose, shapes: [&dyn Shape; 2]) -> Left {
     if ValidPose::new(pos12).is_none() {
@@ -177,7 +177,7 @@ pub(crate) fn why_left(pos12: &Pose, shapes: [&dyn Shape; 2]) -> Left {
     }
 }
 
-/// A hull, and where in its pair it is. It is not looked up before the other shape is known.
+/// A hull and its position in the pair. It is looked up only once the other shape is known.
 struct HullOperand<'a> {
     operand: Operand<'a>,
     epoch: Epoch,
@@ -185,14 +185,14 @@ struct HullOperand<'a> {
 }
 
 impl HullOperand<'_> {
-    /// Visits the hull and another shape, if that is known, and neither too flat nor too small.
+    /// Visits the hull and another shape, if that is known and neither too flat nor too small.
     #[inline(never)]
     fn visit<V: PairVisitor>(
         &self,
         other: &dyn Shape,
         visitor: &mut V,
     ) -> Result<V::Answer, Unsupported> {
-        // What such a shape shows as its typed shape may be a likeness only.
+        // The typed shape of such a shape may only be similar.
         if other.shape_type() == ShapeType::Custom {
             return Err(Unsupported);
         }
@@ -269,7 +269,7 @@ impl HullOperand<'_> {
         })
     }
 
-    /// Hands over the hull together with the other shape.
+    /// Calls the visitor with the hull and the other shape.
     #[inline]
     fn with<B, T>(
         &self,

@@ -1,7 +1,7 @@
-//! Pairs of any size as parry's searches like them: about as large as one.
+//! Scales pairs of any size to about one, as parry's searches need.
 //!
-//! These stop at absolute lengths, so that they lose the contacts of millimetres. Scaling by a power of
-//! two is exact.
+//! These searches stop at absolute lengths, and so lose contacts between millimetre-sized shapes. Scaling by
+//! a power of two is exact.
 
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::contact_support_map_support_map;
@@ -12,18 +12,18 @@ use crate::parry::pair::Pair;
 use crate::support::Support;
 use crate::tolerance::LARGEST_SCALED;
 
-/// Lengths of a pair are multiplied by it.
+/// The factor by which the lengths of a pair are multiplied.
 #[derive(Clone, Copy)]
 pub(crate) struct Scale(Real);
 
 impl Scale {
-    /// The power of two that brings the smaller radius of two to between one and two.
+    /// The power of two that scales the smaller of two radii to between one and two.
     pub fn of<B: Support>(pair: &Pair<'_, B>) -> Self {
         let radius_1 = pair.hull.radius() + pair.border_radii[0];
         let radius_2 = pair.other.radius() + pair.border_radii[1];
         let wanted = radius_1.min(radius_2).log2().floor();
         let possible = (radius_1.max(radius_2) / LARGEST_SCALED).log2().ceil();
-        // Of what f32 has as normal numbers, with their inverses.
+        // Both the factor and its inverse are normal f32 numbers.
         Self((-wanted.max(possible)).clamp(-126.0, 126.0).exp2() as Real)
     }
 
@@ -39,7 +39,7 @@ impl Scale {
         Scaled { shape, scale: self }
     }
 
-    /// Runs `update` on a manifold whose lengths are scaled meanwhile.
+    /// Runs `update` on a manifold with scaled lengths, and scales them back.
     pub fn with_manifold<M, C>(
         self,
         manifold: &mut ContactManifold<M, C>,
@@ -58,8 +58,8 @@ impl Scale {
     }
 }
 
-/// The contact of a hull and a shape that touch or overlap, by parry's search, however far apart they are
-/// to it. `None` where it fails.
+/// The contact of a hull and a shape that touch or overlap, by parry's search, even if it finds them apart.
+/// `None` if it fails.
 pub(crate) fn contact<B: Support>(
     pair: &Pair<'_, B>,
     other: &dyn PolygonalFeatureMap,

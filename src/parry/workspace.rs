@@ -15,18 +15,18 @@ pub(crate) struct ThreadWorkspace {
     pub hulls: HullCache,
     pub seams: SeamsCache,
     pub workspace: Workspace,
-    /// How often all had been asked to trim when it was made.
+    /// The number of trim requests when it was made.
     trims: u64,
 }
 
-/// How often all threads were asked to trim.
+/// The number of trim requests to all threads.
 static TRIMS: AtomicU64 = AtomicU64::new(0);
 
 thread_local! {
     static WORKSPACE: Cell<Option<Box<ThreadWorkspace>>> = const { Cell::new(None) };
 }
 
-/// Drops what threads keep: this one now, others before their next query.
+/// Drops the workspaces of all threads: of this one now, of others before their next query.
 pub(crate) fn trim() {
     TRIMS.fetch_add(1, Ordering::Relaxed);
     ThreadWorkspace::with(|_| ());
@@ -34,8 +34,8 @@ pub(crate) fn trim() {
 }
 
 impl ThreadWorkspace {
-    /// Works on that of this thread, which is out of its place meanwhile: whoever asks within a query (a
-    /// user's `NormalConstraints`), or while the thread ends, works on a new one.
+    /// Runs `work` on this thread's workspace, which is taken out meanwhile. A query within a query (from a
+    /// user's `NormalConstraints`), or while the thread ends, gets a new one.
     // perf: in a call the work would go through memory, which pairs that are apart notice.
     #[inline(always)]
     pub fn with<T>(work: impl FnOnce(&mut Self) -> T) -> T {

@@ -1,8 +1,8 @@
 //! Contacts of compounds.
 //!
-//! Parry's routine for these pairs scans all points of each part for its bounding box, moves every
-//! manifold, and looks each one up in a hash table: for parts of sixty points more work than our
-//! queries. Here the boxes are those that the compound keeps, and manifolds stay where they are.
+//! parry's routine for these pairs scans all points of each part for its bounding box, moves every manifold,
+//! and looks each one up in a hash table. For parts of sixty points this is more work than our queries. We
+//! use the boxes that the compound stores, and manifolds stay where they are.
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::Pose;
@@ -35,7 +35,7 @@ pub(crate) fn compounds<M, C, F>(
         let near_1 = c1.aabbs()[i as usize].loosened(sub_manifolds.prediction);
         let pos_part1_2 = part_1.pos.map_or(*pos12, |pos| pos.inv_mul(pos12));
         for k in c2.bvh().intersect_aabb(&near_1.transform_by(&pos21)) {
-            // Boxes around turned boxes are large: the other way round many are apart.
+            // Boxes around rotated boxes are large. With the compounds exchanged, many of them are apart.
             if !box_in(c2, k, pos12).intersects(&near_1) {
                 continue;
             }

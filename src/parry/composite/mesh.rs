@@ -1,9 +1,8 @@
 //! Contacts of hulls with triangle meshes and height fields.
 //!
-//! Parry's routines compute the pseudo-normals of every triangle nearby, most of which have no
-//! contact, and move the manifolds of a height field from frame to frame through a hash table.
-//! Here normals are computed where there is a contact to correct, and manifolds stay where they
-//! are.
+//! parry's routines compute the pseudo-normals of every nearby triangle, most of which have no contact, and
+//! move the manifolds of a height field through a hash table in each frame. We compute normals only if there
+//! is a contact to correct, and manifolds stay where they are.
 
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Pose;
@@ -30,7 +29,7 @@ impl<'a> Triangles<'a> {
         mesh.or_else(|| shape.as_heightfield().map(Self::Field))
     }
 
-    /// Hands those whose boxes meet a box to `f`, always in the same order.
+    /// Calls `f` for the triangles whose boxes meet a box, always in the same order.
     fn each_near(self, aabb: &Aabb, mut f: impl FnMut(u32, &Triangle)) {
         match self {
             Self::Mesh(mesh) => {
@@ -42,7 +41,7 @@ impl<'a> Triangles<'a> {
         }
     }
 
-    /// Whether the normals of its contacts are corrected.
+    /// Whether the normals of contacts are corrected.
     fn is_flagged(self) -> bool {
         match self {
             Self::Mesh(mesh) => mesh.flags().contains(TriMeshFlags::FIX_INTERNAL_EDGES),

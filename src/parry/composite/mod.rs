@@ -1,8 +1,8 @@
-//! Composite shapes: our routines take compounds apart, and meshes that meet a hull; parry's routines
-//! do the rest. Either way *we* are asked about the parts.
+//! Composite shapes: our routines take apart compounds, and meshes that meet a hull; parry's routines do the
+//! rest. Both call *our* dispatcher for the parts.
 //!
-//! Parry's own dispatcher hands itself to those routines, so that a dispatcher chained in front
-//! of it never sees the hulls inside of compounds, meshes, height fields and voxels.
+//! parry's own dispatcher passes itself to those routines, so a dispatcher chained in front of it would never
+//! see the hulls inside compounds, meshes, height fields and voxels.
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::{
@@ -43,7 +43,7 @@ where
     F: PersistentQueryDispatcher<M, C>,
 {
     use ShapeType::{HeightField, TriMesh, Voxels};
-    // Parry's routines assert that boxes are not loosened by less than nothing.
+    // parry's routines assert that boxes are not loosened by a negative length.
     let prediction = prediction.max(0.0);
     let [s1, s2] = shapes;
     if by_us(updater, pos12, shapes, prediction, manifolds, workspace) {
@@ -88,8 +88,8 @@ where
     true
 }
 
-/// Leaves the one manifold that a pair of convex shapes has. If a shape had parts until now, the
-/// manifolds of its parts are still there, and rapier must notice that they go.
+/// Leaves a single manifold, as a pair of convex shapes has. If a shape had parts until now, the manifolds of
+/// its parts are still there, and rapier must notice that they are removed.
 pub(crate) fn reset_to_single<M: Default + Clone, C: Default + Copy>(
     manifolds: &mut Vec<ContactManifold<M, C>>,
     workspace: &mut Option<ContactManifoldsWorkspace>,
@@ -105,8 +105,8 @@ pub(crate) fn reset_to_single<M: Default + Clone, C: Default + Copy>(
     }
     *workspace = (!manifolds.is_empty()).then(empty_workspace);
     manifolds.clear();
-    // A first push would make room for four. Rapier goes through all pairs in every frame, and reads
-    // dense memory faster.
+    // A first push would make room for four. rapier reads all pairs in every frame, and dense memory is
+    // faster.
     manifolds.reserve_exact(1);
     manifolds.push(ContactManifold::with_data(0, 0, M::default()));
 }
@@ -114,8 +114,8 @@ pub(crate) fn reset_to_single<M: Default + Clone, C: Default + Copy>(
 /// A compound against another one or a convex shape, or a hull against a shape made of triangles.
 /// `false` for other pairs.
 ///
-/// Compounds are ours whether or not they have a hull: to find out would take a look at every part in
-/// every update, however few of them are near.
+/// We answer compounds whether or not they have a hull: finding out would mean looking at every part in every
+/// update, however few of them are near.
 fn by_us<M, C, F>(
     updater: Updater<'_, F>,
     pos12: &Pose,
@@ -154,7 +154,7 @@ where
     false
 }
 
-/// Voxels against anything; one of the shapes has some, and one `is_composite` besides, or none is.
+/// Voxels against anything. One of the shapes has voxels, and the other may be composite (`is_composite`).
 fn voxels<M, C>(
     dispatcher: &dyn PersistentQueryDispatcher<M, C>,
     pos12: &Pose,
@@ -173,7 +173,7 @@ fn voxels<M, C>(
         ),
         [Ball, _] | [_, Ball] => {
             contact_manifolds_voxels_ball_shapes(pos12, s1, s2, prediction, manifolds);
-            // Parry forgets it.
+            // parry does not set it.
             *workspace = Some(empty_workspace());
         }
         _ if is_composite => contact_manifolds_voxels_composite_shape_shapes(
@@ -185,7 +185,7 @@ fn voxels<M, C>(
     }
 }
 
-/// A height field against anything; one of the shapes is one.
+/// A height field against anything. One of the shapes is a height field.
 fn height_field<M, C>(
     dispatcher: &dyn PersistentQueryDispatcher<M, C>,
     pos12: &Pose,

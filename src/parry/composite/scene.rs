@@ -1,6 +1,6 @@
-//! Scene queries against shapes with parts: parry's routines pick the parts, and ask *us* about
-//! them. The order of cases is that of parry's own dispatcher; where it has no such case the pair is [`Unsupported`].
-//! Negative distances become zero: the routines assert that they are not.
+//! Scene queries against shapes with parts: parry's routines choose the parts, and call *our* dispatcher for
+//! them. The cases are in the order of parry's own dispatcher; if it has no such case, the pair is
+//! [`Unsupported`]. Negative distances become zero, since the routines assert that they are not negative.
 
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{
@@ -27,7 +27,7 @@ pub(crate) fn intersection_test(
     g1: &dyn Shape,
     g2: &dyn Shape,
 ) -> Result<ShapeIntersection, Unsupported> {
-    // Parry projects the centre of a ball on the whole shape.
+    // parry projects the centre of a ball onto the whole shape.
     if [g1, g2].iter().any(|g| g.shape_type() == ShapeType::Ball) {
         return Err(Unsupported);
     }
@@ -119,15 +119,15 @@ pub(crate) fn cast_shapes(
     })
 }
 
-/// A shape on its way, with rotation.
+/// A moving shape, with rotation.
 #[derive(Clone, Copy)]
 pub(crate) struct MovingShape<'a> {
     pub motion: &'a NonlinearRigidMotion,
     pub shape: &'a dyn Shape,
 }
 
-/// Also of two convex shapes: parry's search for the time of impact asks us how far they are
-/// apart, wherever it looks.
+/// This includes two convex shapes: parry's search for the time of impact calls our distance query at each
+/// step.
 pub(crate) fn cast_shapes_nonlinear(
     us: &impl QueryDispatcher,
     movers: [MovingShape<'_>; 2],

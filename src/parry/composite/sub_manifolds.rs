@@ -1,8 +1,8 @@
 //! The manifolds of a pair with parts: one for each two parts that may meet.
 //!
-//! They stay where they are, found by the parts they name. The workspace holds nothing. Rapier
-//! wants one of pairs with many manifolds, and drops it when a shape changes. Parry's routines, if
-//! the pair comes back to them, see that it is not theirs, and begin anew.
+//! They stay where they are, and are found by the parts that they name. The workspace is empty: rapier
+//! requires one for pairs with many manifolds, and drops it when a shape changes. If the pair comes back to
+//! parry's routines, they see that the workspace is not theirs, and start over.
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
@@ -21,7 +21,7 @@ pub(crate) struct SubShape<'a> {
     /// Its number; 0 for a whole.
     pub id: u32,
     pub operand: Operand<'a>,
-    /// Where it is in the compound.
+    /// Its pose in the compound.
     pub pos: Option<Pose>,
     pub constraints: Constraints<'a>,
 }
@@ -37,23 +37,23 @@ impl<'a> SubShape<'a> {
     }
 }
 
-/// The manifolds of a pair, while they are brought up to date.
+/// The manifolds of a pair during an update.
 pub(crate) struct SubManifolds<'a, M, C, F> {
     updater: Updater<'a, F>,
     pub prediction: Real,
     manifolds: &'a mut Vec<ContactManifold<M, C>>,
-    /// How many of them are of this frame; those of parts that meet no more come behind.
+    /// How many of them are of this frame. The manifolds of parts that no longer meet come after these.
     done: usize,
-    /// How many have been looked at in search of one.
+    /// How many manifolds have been examined in searches.
     searched: usize,
-    /// Where those behind `done` are, once searching has become more work than this.
+    /// The positions of the manifolds after `done`, once searching has become more work than a map.
     places: Option<IntMap<u64, usize>>,
 }
 
-/// An update may look at every manifold this many times before it makes a map of them.
+/// An update may examine every manifold this many times before it builds a map of them.
 const SEARCHES: usize = 2;
 
-/// By which the manifold of two parts is found.
+/// The key of the manifold of two parts.
 fn key(part_1: u32, part_2: u32) -> u64 {
     u64::from(part_1) << 32 | u64::from(part_2)
 }
@@ -64,8 +64,8 @@ where
     C: Default + Copy + Send + Sync,
     F: PersistentQueryDispatcher<M, C>,
 {
-    /// Our workspace, or one of parry's routines for such pairs, says that the manifolds are of
-    /// these shapes. Without it they may be of shapes that were here before.
+    /// If the workspace is ours, or from one of parry's routines for such pairs, the manifolds belong to
+    /// these shapes. Otherwise they may belong to earlier shapes.
     pub fn new(
         updater: Updater<'a, F>,
         prediction: Real,
@@ -107,7 +107,7 @@ where
     pub fn update_pair(&mut self, pos12: &Pose, part_1: &SubShape<'_>, part_2: &SubShape<'_>) {
         let manifold = self.manifold(part_1, part_2);
         let constraints = [part_1.constraints, part_2.constraints];
-        // As parry's routines do: a pair that nobody supports has no contacts.
+        // As in parry's routines, an unsupported pair has no contacts.
         let _ = self.updater.update(
             pos12,
             [part_1.operand, part_2.operand],
@@ -145,7 +145,8 @@ where
         }
     }
 
-    /// Where the manifold of two parts is: mostly where it was, for parts come in the same order.
+    /// The position of the manifold of two parts. Mostly it is where it was, since parts come in the same
+    /// order.
     fn manifold(&mut self, part_1: &SubShape<'_>, part_2: &SubShape<'_>) -> usize {
         let place = self.done;
         let known = self.find(part_1.id, part_2.id);
@@ -194,16 +195,16 @@ where
         key(manifold.subshape1, manifold.subshape2)
     }
 
-    /// Drops the manifolds of parts that meet no more.
+    /// Drops the manifolds of parts that no longer meet.
     pub fn finish(self) {
         debug_assert!(self.done <= self.manifolds.len());
         self.manifolds.truncate(self.done);
     }
 }
 
-/// What rapier knows a pair by whose manifolds come and go: it enters them in its solver graph
-/// anew. An empty workspace of the type that parry uses for voxels: it can be saved and loaded,
-/// and parry's routines for other pairs see that it is not theirs.
+/// An empty workspace, which tells rapier that the manifolds of a pair come and go and must be added to its
+/// solver graph again. It has the type that parry uses for voxels: so it can be saved and loaded, and parry's
+/// routines for other pairs see that it is not theirs.
 pub(crate) fn empty_workspace() -> ContactManifoldsWorkspace {
     VoxelsShapeContactManifoldsWorkspace::<2>::new().into()
 }
@@ -217,7 +218,7 @@ mod tests {
     use crate::parry::hull_cache::epoch::Epoch;
     use crate::stats::SharedStats;
 
-    /// Parts that meet for the first time are looked for among all that met before, in vain.
+    /// Parts that meet for the first time are searched among all that met before, in vain.
     #[test]
     fn searching_is_linear_in_the_parts() {
         let (stats, ball) = (SharedStats::default(), Ball::new(0.5));

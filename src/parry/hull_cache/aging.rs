@@ -1,33 +1,33 @@
-//! How long prepared hulls stay that nobody asks for.
+//! How long unused prepared hulls are kept.
 //!
-//! Age is measured in bytes: those prepared since a hull was used last. Where hulls come and go
-//! quickly, those of yesterday go quickly; where nothing comes, time passes as if a little came.
-//! Hulls that were dropped too early are noticed when they are prepared again: then all may grow older.
+//! Age is measured in bytes: those prepared since a hull was last used. If hulls come and go quickly, unused
+//! ones are dropped quickly; if no hull comes, time passes as if a little were prepared. If a dropped hull is
+//! prepared again, it was dropped too early, and all hulls may grow older.
 
 use std::time::{Duration, Instant};
 
 use crate::parry::int_hash::IntMap;
 
-/// Bytes that are kept whether or not they are in use; and the least age at which those beyond go.
+/// How many bytes are kept even if unused, and the lowest age at which hulls beyond these are dropped.
 pub(crate) const KEEP_BYTES: u64 = 32 << 20;
 
-/// In this time all grows older by `KEEP_BYTES`.
+/// The time in which every hull ages by `KEEP_BYTES`.
 const KEEP_TIME: Duration = Duration::from_secs(60);
 
-/// What was dropped is remembered for this many lifetimes; when as many have passed without
-/// a regret, they become shorter.
+/// Dropped hulls are remembered for this many lifetimes. If as many pass and none was dropped too early,
+/// lifetimes become shorter.
 const MEMORY: u64 = 4;
 
 #[derive(Debug)]
 pub(crate) struct Aging {
     now: u64,
-    /// Hulls that are older go.
+    /// Older hulls are dropped.
     lifetime: u64,
-    /// When each was used last that is gone.
+    /// When each dropped hull was last used.
     gone: IntMap<u64, u64>,
-    /// When the last one came back, or the lifetime became shorter.
+    /// When a dropped hull last came back, or the lifetime last became shorter.
     changed: u64,
-    /// Up to when time has been counted.
+    /// Time has been counted up to here.
     counted: Option<Instant>,
 }
 
@@ -43,7 +43,7 @@ impl Default for Aging {
     }
 }
 
-/// `None` where there is no clock, as in browsers: ages are of bytes alone there.
+/// `None` if there is no clock, as in browsers: there, only bytes count.
 fn clock() -> Option<Instant> {
     let has_clock = !cfg!(all(target_family = "wasm", target_os = "unknown"));
     has_clock.then(Instant::now)
@@ -55,7 +55,7 @@ impl Aging {
         self.now
     }
 
-    /// A hull was prepared, which is known again by a key.
+    /// Notes that the hull with this key was prepared.
     pub fn prepared(&mut self, key: u64, bytes: usize) {
         self.now += bytes as u64;
         if let Some(used) = self.gone.remove(&key) {
@@ -75,7 +75,7 @@ impl Aging {
         self.now += (share * KEEP_BYTES as f64) as u64;
     }
 
-    /// Before hulls are dropped. Whether one is too old that was used at a time.
+    /// Prepares to drop hulls. The result says whether a hull that was last used at some time is too old.
     pub fn limit(&mut self) -> impl Fn(u64) -> bool + use<> {
         if self.now - self.changed > MEMORY * self.lifetime {
             self.lifetime = KEEP_BYTES.max(self.lifetime / 2);
@@ -87,7 +87,7 @@ impl Aging {
         move |used| used < oldest
     }
 
-    /// A hull is dropped.
+    /// Notes that a hull is dropped.
     pub fn dropped(&mut self, key: u64, used: u64) {
         self.gone.insert(key, used);
     }

@@ -1,20 +1,20 @@
-//! A digest of many points, by which they are known again.
+//! A digest by which many points are recognised.
 //!
-//! Comparing points with a copy of them reads both; a digest reads the points alone. For hulls that are
-//! not in the nearest cache reading is what there is to pay: of 1,000 vertices a digest takes two thirds
-//! of the time, and leaves the caches to others.
+//! Comparing points with a copy reads both; a digest reads only the points. For hulls that are not in the
+//! nearest cache, reading is the whole cost: for 1,000 vertices a digest takes two thirds of the time, and
+//! uses less of the caches.
 //!
-//! Sixteen lanes take in sixteen bytes each in turn, as the key of a round of AES (FIPS 197), for which
-//! processors have an instruction. A round maps states one to one whatever the key, and keys whatever the
-//! state. So where points differ within some 241 bytes, which are twenty points, the digests differ for
-//! certain: each lane sees one difference at most, and nothing undoes it. A lane that sees more of them
-//! ends as it would have without with a chance of about one in 2^128; if all points changed, that goes
-//! for each of the sixteen. (This supposes that the changes have nothing to do with AES. Who looks for
-//! points that deceive it finds some: it keeps no secret.)
+//! Sixteen lanes in turn take sixteen bytes each, as the key of a round of AES (FIPS 197), for which
+//! processors have an instruction. A round is a bijection of states for any key, and of keys for any state.
+//! So if points differ only within some 241 bytes, which are twenty points, the digests differ for certain:
+//! each lane sees at most one difference, and nothing cancels it. If a lane sees several differences, the
+//! chance that they cancel is about one in 2^128; if all points change, this holds for each of the sixteen
+//! lanes. (This assumes that the changes have nothing to do with AES. The digest has no secret, so points
+//! that deceive it can be constructed.)
 
 use glam::Vec3;
 
-/// Of fewer points a comparison is no slower.
+/// With fewer points, a comparison is no slower.
 const FEWEST: usize = 150;
 
 /// A digest of points in their order.
@@ -22,17 +22,17 @@ const FEWEST: usize = 150;
 pub(crate) struct Digest {
     /// The first bytes.
     start: [u8; ALIGNED],
-    /// How many of them no lane takes in, so that those are aligned which are.
+    /// How many of these no lane takes, so that the rest is aligned.
     skipped: usize,
-    /// What whole rows leave in them.
+    /// The states of the lanes after all whole rows.
     lanes: [u128; LANES],
-    /// The end of the points, with what is no whole row.
+    /// The end of the points, which includes the incomplete row.
     end: [u8; ROW],
     count: usize,
 }
 
 impl Digest {
-    /// `None` where a comparison serves better: of few points, and where there is no such instruction.
+    /// `None` if a comparison is better: for few points, or without the instruction.
     #[inline]
     pub fn of(points: &[Vec3]) -> Option<Self> {
         let count = points.len();
@@ -50,8 +50,8 @@ impl Digest {
         })
     }
 
-    /// Whether it is that of these points.
-    // In line it would hold up the comparison of small hulls.
+    /// Whether it is the digest of these points.
+    // Inlined, it would slow down the comparison of small hulls.
     #[inline(never)]
     pub fn matches(&self, points: &[Vec3]) -> bool {
         let bytes: &[u8] = bytemuck::cast_slice(points);
@@ -64,13 +64,13 @@ impl Digest {
 
 const LANES: usize = 16;
 
-/// What one lane takes in at a time.
+/// The bytes that one lane takes at a time.
 const BLOCK: usize = size_of::<u128>();
 
-/// What all lanes do.
+/// A row of blocks, one for each lane.
 const ROW: usize = LANES * BLOCK;
 
-/// Two blocks at once are read in half the time where they do not cross lines of the cache.
+/// Two blocks at once are read in half the time if they do not cross cache lines.
 const ALIGNED: usize = 2 * BLOCK;
 
 #[cfg(target_arch = "x86_64")]
@@ -81,7 +81,7 @@ mod rounds {
 
     use super::{LANES, ROW};
 
-    /// `None` where there is no instruction for them.
+    /// `None` without the instruction.
     #[inline]
     pub fn lanes(bytes: &[u8]) -> Option<[u128; LANES]> {
         if !has_rounds() {
@@ -98,7 +98,7 @@ mod rounds {
         }
     }
 
-    /// Without AVX the lanes would be more than the registers hold.
+    /// Without AVX there would be more lanes than registers.
     #[inline]
     pub fn has_rounds() -> bool {
         is_x86_feature_detected!("aes") && is_x86_feature_detected!("avx")
@@ -117,7 +117,7 @@ mod rounds {
         bytemuck::cast(take_in::<_, LANES>(bytes, round))
     }
 
-    /// What whole rows leave in `N` registers, which are all lanes.
+    /// The states of all lanes, in `N` registers, after all whole rows.
     #[inline(always)]
     fn take_in<V: Pod, const N: usize>(bytes: &[u8], round: impl Fn(V, V) -> V) -> [V; N] {
         let mut lanes = [V::zeroed(); N];
@@ -146,7 +146,7 @@ mod tests {
 
     use super::*;
 
-    /// Coordinates of every kind, bit patterns of NaN included.
+    /// Coordinates of every kind, including bit patterns of NaN.
     fn points(counts: impl Into<prop::collection::SizeRange>) -> impl Strategy<Value = Vec<Vec3>> {
         let coordinate = any::<u32>().prop_map(f32::from_bits);
         prop::collection::vec(
@@ -169,7 +169,7 @@ mod tests {
             prop_assert!(digest.matches(&points.clone()));
         }
 
-        /// That is certain, whatever the change.
+        /// This is certain, whatever the change is.
         #[test]
         fn twenty_points_are_not_changed_unnoticed(
             points in points(FEWEST..400),
@@ -184,7 +184,7 @@ mod tests {
             prop_assert_eq!(digest.matches(&changed), bits(&changed) == bits(&points));
         }
 
-        /// What users do to hulls changes all of them, in regular ways.
+        /// Users change all points in regular ways.
         #[test]
         fn a_turned_or_scaled_hull_is_another(points in points(FEWEST..400), shift in 1_usize..FEWEST) {
             let points: Vec<Vec3> = points

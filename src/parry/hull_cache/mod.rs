@@ -1,15 +1,15 @@
 //! Prepared hulls of plain convex polyhedra, found again by address and proved by content.
 //!
-//! A dispatcher is handed bare references: it cannot know whether the polyhedron at an address
-//! is the one that was there before. So each use compares the polyhedron's points with those the
-//! hull was built from (a `memcmp`, some 20 ns for 100 vertices; of large hulls a `Digest` of them,
-//! 130 ns for 1,000), and the edges that these points do not determine, which are those across flat sides.
-//! Equal polyhedra have an equal hull, whatever the allocator or the user did in
-//! between: the table is a pure function of the shapes, and no answer depends on its history. Only the
-//! first use in an [`Epoch`] compares: the update of one pair, or a step that the user vouches for.
+//! A dispatcher gets bare references: it cannot know whether the polyhedron at an address is the one that was
+//! there before. So each use compares the polyhedron's points with those from which the hull was built (a
+//! `memcmp`, some 20 ns for 100 vertices; for large hulls a `Digest`, 130 ns for 1,000), and also the edges
+//! that the points do not determine, those across flat sides. Equal polyhedra have equal hulls, whatever the
+//! allocator or the user did in between: the table is a pure function of the shapes, and no answer depends on
+//! its history. Only the first use in an [`Epoch`] compares. An epoch is the update of one pair, or a step in
+//! which the user promises unchanged shapes.
 //!
-//! Each thread has a table of its own, which needs no lock; the hulls themselves are shared. Nothing
-//! says that a polyhedron is gone: its hull goes when it was not used for long ([`Aging`]).
+//! Each thread has its own table, which needs no lock; the hulls themselves are shared. Nothing reports that
+//! a polyhedron is gone: its hull is dropped once it has not been used for long ([`Aging`]).
 
 mod aging;
 mod digest;
@@ -26,18 +26,19 @@ use aging::{Aging, KEEP_BYTES};
 use epoch::Epoch;
 use registry::PreparedHull;
 
-/// Room is made after this many pairs, and whenever this share of what may stay has been prepared.
+/// Unused hulls are dropped after this many pairs, and whenever this share of the allowed bytes has been
+/// prepared.
 const LOOK_AFTER: u32 = 4096;
 const LOOK_AFTER_BYTES: usize = KEEP_BYTES as usize / 4;
 
 /// A thread's prepared hulls.
 pub(crate) struct HullCache {
     entries: IntMap<Address, usize>,
-    /// The last address and slot met of each class of addresses, before the map is asked.
+    /// The last address and slot of each class of addresses. It is tried before the map.
     recent: DirectMapped,
     slots: Vec<Slot>,
     bytes: usize,
-    /// How many bytes there may be, and pairs until then, when room is made.
+    /// The number of bytes, and of pairs, at which unused hulls are dropped.
     look_at: usize,
     look_after: u32,
     aging: Aging,
@@ -57,15 +58,15 @@ impl Default for HullCache {
     }
 }
 
-/// Where a polyhedron keeps its points.
+/// The address of a polyhedron's points.
 type Address = usize;
 
 struct Slot {
     address: Address,
     prepared: Arc<PreparedHull>,
-    /// When it was used last, by the table's `Aging`.
+    /// When it was last used, by the table's `Aging`.
     used: u64,
-    /// In which it was proved last.
+    /// The epoch in which it was last verified.
     epoch: Epoch,
 }
 
@@ -79,13 +80,13 @@ impl Slot {
         }
     }
 
-    /// Whether it is of the polyhedron at its address: it was proved in this epoch, or is now.
+    /// Whether it belongs to the polyhedron at its address. This was verified in this epoch, or is now.
     #[inline(always)]
     fn matches(&self, polyhedron: &ConvexPolyhedron, epoch: Epoch) -> bool {
         self.epoch == epoch || self.prepared.matches(polyhedron)
     }
 
-    /// Marks the slot as proved again and returns a reference to its hull, if it has one.
+    /// Marks the slot as verified and returns a reference to its hull, if it has one.
     #[inline(always)]
     fn proved(&mut self, place: usize, now: u64, epoch: Epoch) -> Option<HullRef> {
         self.used = now;
@@ -93,23 +94,23 @@ impl Slot {
         self.prepared.hull().is_some().then_some(HullRef(place))
     }
 
-    /// By which it is noticed that the same polyhedron is back, if it is where it was.
+    /// The key by which the same polyhedron at the same address is recognised.
     fn key(&self) -> u64 {
         self.prepared.key() ^ self.address as u64
     }
 
-    /// What goes with it, if nobody else has it.
+    /// The bytes that are freed with it, if nobody else uses the hull.
     fn bytes(&self) -> usize {
         size_of::<Self>() + self.prepared.bytes()
     }
 }
 
-/// A place in the table, good until room is made.
+/// A reference into the table, valid until hulls are dropped.
 #[derive(Clone, Copy)]
 pub(crate) struct HullRef(usize);
 
 impl HullCache {
-    /// Before the hulls of a pair are looked for. References end here.
+    /// Called before the hulls of a pair are looked up. Earlier references become invalid.
     #[inline(always)]
     pub fn begin(&mut self) {
         self.look_after -= 1;
@@ -118,7 +119,7 @@ impl HullCache {
         }
     }
 
-    /// Drops what seems unused, if it is much.
+    /// Drops hulls that seem unused, if there are many.
     #[cold]
     #[inline(never)]
     fn look_after(&mut self) {
@@ -189,7 +190,7 @@ impl HullCache {
         self.aging.prepared(slot.key(), slot.bytes());
         self.bytes += slot.bytes();
         if self.bytes > self.look_at {
-            // In the next pair: this one holds references.
+            // They are dropped at the next pair, since this one holds references.
             self.look_after = 1;
         }
         if let Some(i) = known {
@@ -202,7 +203,7 @@ impl HullCache {
         self.slots.len() - 1
     }
 
-    /// The hull at a place that [`find`](Self::find) gave.
+    /// The hull of a reference from [`find`](Self::find).
     #[inline]
     pub fn get(&self, place: HullRef) -> Option<&Hull> {
         debug_assert!(
@@ -216,7 +217,7 @@ impl HullCache {
 /// A direct-mapped cache: one pair of address and slot for each class of addresses.
 struct DirectMapped([(Address, usize); CLASSES]);
 
-/// Enough for the different hulls of most scenes, in a few kilobytes.
+/// This is enough for the different hulls of most scenes, and takes a few kilobytes.
 const CLASSES: usize = 256;
 
 impl Default for DirectMapped {

@@ -1,8 +1,8 @@
-//! What is prepared of plain polyhedra, shared by all that need the same.
+//! Prepared hulls of plain polyhedra, shared between threads and equal polyhedra.
 //!
-//! Each thread of a pool meets every hull sooner or later; in a loaded world each collider has a shape
-//! of its own, and worlds that are simulated side by side are made alike. One prepared hull serves all
-//! of them: it is prepared once, and it is in the caches of the machine once.
+//! Each thread of a pool meets every hull sooner or later. In a loaded world each collider has its own shape,
+//! and worlds that are simulated side by side have equal shapes. One prepared hull serves all of them: it is
+//! prepared once, and is in the processor's caches once.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
@@ -14,11 +14,10 @@ use crate::hull::Hull;
 use crate::hull::build::polyhedron::{Diagonals, fingerprint, hull_and_diagonals, same_points};
 use crate::parry::hull_cache::digest::Digest;
 
-/// What is prepared of a polyhedron. Whether it is of this one is to be proved by
-/// [`matches`](Self::matches).
+/// The prepared hull of a polyhedron. [`matches`](Self::matches) verifies whether it belongs to a given one.
 #[derive(Debug)]
 pub(crate) struct PreparedHull {
-    /// `None` where no hull can be built: such a shape is left to parry.
+    /// `None` if no hull can be built: such a shape is left to parry.
     hull: Option<Hull>,
     source: PointIdentity,
     diagonals: Diagonals,
@@ -26,23 +25,23 @@ pub(crate) struct PreparedHull {
     key: u64,
 }
 
-/// By what the points are known again that it was built from.
+/// How the points from which it was built are recognised.
 #[derive(Debug)]
 enum PointIdentity {
-    /// Many, by a digest.
+    /// Many points, by a digest.
     Digest(Box<Digest>),
-    /// They are the hull's own.
+    /// They are the points of the hull.
     Hull,
     Points(Box<[Vec3]>),
 }
 
 impl PreparedHull {
-    /// That of another polyhedron with the same points and edges, if one is in use; else a new one.
+    /// The prepared hull of another polyhedron with the same points and edges, if one is in use; otherwise a
+    /// new one.
     pub fn get_or_build(polyhedron: &ConvexPolyhedron) -> Arc<Self> {
         let key = fingerprint(polyhedron);
         let known = HullRegistry::with(|registry| registry.find(key, polyhedron));
-        // Other threads need not wait until it is built. Of those that build the same, one will be
-        // the first.
+        // Other threads do not wait until it is built. If several build the same, the first one wins.
         known.unwrap_or_else(|| {
             let new = Arc::new(Self::new(key, polyhedron));
             HullRegistry::with(|registry| {
@@ -71,8 +70,7 @@ impl PreparedHull {
         }
     }
 
-    /// Whether it was made of this polyhedron; of many points, up to the chance that [`Digest`]
-    /// leaves.
+    /// Whether it was made from this polyhedron; for many points, up to the error probability of [`Digest`].
     // perf: asked twice in each pair of hulls, most of which are proved apart in a thousand instructions.
     #[inline(always)]
     pub fn matches(&self, polyhedron: &ConvexPolyhedron) -> bool {
@@ -91,7 +89,7 @@ impl PreparedHull {
         }
     }
 
-    /// Those that are equal have the same; others seldom do.
+    /// Equal polyhedra have equal fingerprints; others seldom do.
     pub fn key(&self) -> u64 {
         self.key
     }
@@ -111,7 +109,7 @@ impl PreparedHull {
         size_of::<Self>() + hull + source + self.diagonals.heap_bytes()
     }
 
-    /// Forgets those that no thread has any more.
+    /// Drops the hulls that no thread uses any more.
     pub fn forget_unused() {
         HullRegistry::with(HullRegistry::sweep);
     }
@@ -121,7 +119,7 @@ impl PreparedHull {
 /// on first use.
 struct HullRegistry {
     shared: BTreeMap<u64, Vec<Weak<PreparedHull>>>,
-    /// At how many fingerprints those are dropped that nobody uses any more.
+    /// The number of fingerprints at which unused hulls are dropped.
     sweep_at: usize,
 }
 
@@ -132,7 +130,7 @@ static REGISTRY: Mutex<HullRegistry> = Mutex::new(HullRegistry {
 
 impl HullRegistry {
     fn with<T>(work: impl FnOnce(&mut Self) -> T) -> T {
-        // A panic elsewhere leaves nothing half done here.
+        // A panic elsewhere leaves this in a consistent state.
         work(&mut REGISTRY.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
@@ -196,7 +194,7 @@ mod tests {
         assert!(higher.matches(&pyramid(1.5, false)));
     }
 
-    /// The diagonals of a flat side are our own, so any others make the same hull.
+    /// We choose the diagonals of flat sides, so any others lead to the same hull.
     #[test]
     fn the_diagonals_of_flat_sides_do_not_matter() {
         let [one, other] =
@@ -206,7 +204,7 @@ mod tests {
         assert_eq!(one, other);
     }
 
-    /// With a vertex inside of a flat side the names of features depend on the edges.
+    /// With a vertex inside a flat side, the ids of features depend on the edges.
     #[test]
     fn other_edges_are_another_polyhedron() {
         let [one, other] = [false, true].map(|cut| PreparedHull::get_or_build(&six_sided(cut)));
@@ -215,7 +213,7 @@ mod tests {
         assert!(other.matches(&six_sided(true)) && !other.matches(&six_sided(false)));
     }
 
-    /// A pyramid with a vertex inside of its base, to which all corners have an edge, or all but one.
+    /// A pyramid with a vertex inside its base, which has edges to all corners, or to all but one.
     fn six_sided(cut: bool) -> ConvexPolyhedron {
         let corner = |i: u32| {
             let (sin, cos) = (i as f32 * std::f32::consts::FRAC_PI_3).sin_cos();

@@ -10,7 +10,7 @@ use super::HullShape;
 const SCAN_UP_TO: usize = 180;
 
 impl HullShape {
-    /// The box around the hull at a pose, its axes those of the world.
+    /// The axis-aligned box around the hull at a pose.
     #[inline]
     pub(super) fn aabb(&self, pose: &Pose) -> Aabb {
         if self.hull().points().len() <= SCAN_UP_TO {

@@ -1,4 +1,4 @@
-//! Faces, edges and vertices of the hull as parry names them.
+//! Faces, edges and vertices of the hull by parry's ids.
 
 use glam::DVec3;
 use parry3d::math::Vector;
@@ -10,8 +10,8 @@ use crate::support::{FaceId, Polytope, VertexId};
 use crate::tolerance::{FEATURE_ANGLE_COS, FEATURE_ANGLE_SIN};
 
 impl Hull {
-    /// The feature that is extreme in direction `dir`, of length one: a face or an edge if it is
-    /// so nearly, else a vertex.
+    /// The extreme feature in the unit direction `dir`: a face or an edge if one is nearly extreme, and
+    /// otherwise a vertex.
     pub(super) fn feature_toward(&self, dir: DVec3) -> FeatureId {
         let vertex = self.support_vertex(dir);
         let face = self.face_at_vertex(vertex, dir);
@@ -36,13 +36,13 @@ impl Hull {
             })
     }
 
-    /// Where a vertex stands among the corners of a face; `None` if it lies within the face.
+    /// The position of a vertex among the corners of a face; `None` if it is no corner.
     fn place_around(&self, face: FaceId, vertex: VertexId) -> Option<usize> {
         (0..self.face_len(face)).find(|&i| self.face_vertex(face, i) == vertex)
     }
 
-    /// The outward unit normal of a feature, that of an edge or a vertex between those of its
-    /// faces; `None` if there is no such feature.
+    /// The outward unit normal of a feature. For an edge or a vertex it is the mean normal of its faces.
+    /// `None` if there is no such feature.
     pub(super) fn feature_normal(&self, feature: FeatureId) -> Option<Vector> {
         let normal = match feature {
             FeatureId::Face(face) if self.has_face(face.into()) => self.face_normal(face.into()),
@@ -66,8 +66,8 @@ impl Hull {
             .try_normalize()
     }
 
-    /// Four corners at most of a face, as positions around it: `first`, the farthest from it,
-    /// and between these the farthest from the line through them.
+    /// At most four corners of a face, as positions around it: `first`, the farthest from it, and on both
+    /// sides the farthest from the line through these two.
     fn far_corners(&self, face: FaceId, first: usize) -> impl Iterator<Item = usize> {
         let len = self.face_len(face);
         let at = |step: usize| self.vertex(self.face_vertex(face, (first + step) % len));
@@ -91,9 +91,9 @@ impl Hull {
 }
 
 impl PolygonalFeatureMap for Hull {
-    /// The face that looks most in direction `dir` of those at the extreme vertex. Of a face with
-    /// more corners than parry has room for, the extreme one and others far from each other: a
-    /// coin stands on its whole rim, and not on four neighbouring points of it.
+    /// The face at the extreme vertex whose normal is nearest to `dir`. If it has more corners than parry has
+    /// room for, these are the extreme one and others far from each other: a coin stands on its whole rim,
+    /// not on four neighbouring points of it.
     fn local_support_feature(&self, dir: Vector, out_feature: &mut PolygonalFeature) {
         let vertex = self.support_vertex(dir.as_dvec3());
         let face = self.face_at_vertex(vertex, dir.as_dvec3());

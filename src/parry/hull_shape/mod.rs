@@ -1,44 +1,42 @@
-//! [`HullShape`]: a convex hull for colliders that carries everything prepared with it.
+//! [`HullShape`]: a convex hull for colliders that contains its prepared hull.
 //!
-//! With plain `SharedShape::convex_hull` colliders the dispatcher looks its prepared hull up in
-//! a table, and proves by a look at all points that it found the right one; and rapier scans all
-//! points for the bounding box in every frame. A `HullShape` brings its prepared hull along and
-//! finds its bounding box by six climbs, so that no part of a frame costs time in proportion to
-//! the number of vertices (but continuous collision detection, see below).
+//! For plain `SharedShape::convex_hull` colliders, the dispatcher looks up the prepared hull in a cache, and
+//! reads all points to verify that it is the right one. rapier also scans all points for the bounding box in
+//! every frame. A `HullShape` contains its prepared hull and finds its bounding box by six climbs. So no part
+//! of a frame takes time proportional to the number of vertices (except continuous collision detection, see
+//! below).
 //!
 //! # What works
 //! Everything that works with a plain convex hull, with our dispatcher and with rapier's own:
 //! contacts with every other shape, sensors, ray casts, point projections, shape casts, the
 //! character controller, mass properties, scaling, and being a part of a compound.
 //!
-//! - **Mass, ray casts and point projections** are those of the exact solid, in f64. A plain
-//!   hull differs where parry joins faces that are up to 1.5 degrees apart (its mass can be off
-//!   by some per cent, more if it is flat), for hulls of millimetres, and for rays that start
-//!   inside with a direction that is not of length one.
-//! - **A half-space** carries a face by corners far from each other, not by any four.
-//! - **Saving and loading.** The shape shows itself to parry as the convex polyhedron that it
-//!   holds (`as_typed_shape`): that is what is serialized. A loaded world has plain hulls in
-//!   the place of `HullShape`s and works without this crate. With our dispatcher it goes on as
-//!   before, but for the rounding of bounding boxes and for pairs whose contacts parry
-//!   makes (with custom shapes), which may differ as said above.
-//!   To get `HullShape`s back, see [`PreparedShapes`].
+//! - **Mass, ray casts and point projections** are those of the exact solid, in f64. A plain hull differs if
+//!   parry merges faces that are up to 1.5 degrees apart (its mass can be off by a few per cent, or more if
+//!   it is flat), for hulls of millimetres, and for rays that start inside with a direction that is not of
+//!   length one.
+//! - **A half-space** supports a face at corners far from each other, not at any four.
+//! - **Saving and loading.** parry sees the shape as the convex polyhedron that it contains
+//!   (`as_typed_shape`), and this is serialized. A loaded world has plain hulls in place of `HullShape`s and
+//!   works without this crate. With our dispatcher it continues as before, except for the rounding of
+//!   bounding boxes, and for pairs whose contacts parry computes (with custom shapes), which may differ as
+//!   described above. To get `HullShape`s back, see [`PreparedShapes`].
 //! - **Debug rendering** draws the polyhedron's edges, for the same reason.
-//! - **Continuous collision detection** sweeps the polyhedron's points, as it does those of a
-//!   plain hull, with a scan of all points per support query: that is rapier's code.
+//! - **Continuous collision detection** sweeps the polyhedron's points, as for a plain hull, and scans all
+//!   points for each support query: this is rapier's code.
 //!
 //! # What does not
 //! - `shape_type` is `Custom`, since downcasts such as `as_convex_polyhedron` find no
 //!   polyhedron but a `HullShape`. Match on `as_typed_shape` instead.
-//! - `CompoundFlags::FIX_INTERNAL_EDGES` smooths inner edges between `HullShape` parts with our
-//!   dispatcher, which welds corners with parry's default tolerance. With rapier's own they keep
-//!   their own normals: parry cannot downcast them. [`PreparedShapes`] puts plain hulls in their place.
-//! - Rounded borders are for plain hulls: use `SharedShape::round_convex_hull`.
+//! - `CompoundFlags::FIX_INTERNAL_EDGES` smooths inner edges between `HullShape` parts with our dispatcher,
+//!   which welds corners with parry's default tolerance. With rapier's dispatcher, these parts keep their own
+//!   normals, since parry cannot downcast them. [`PreparedShapes`] replaces them by plain hulls.
+//! - Only plain hulls have rounded borders: use `SharedShape::round_convex_hull`.
 //!
 //! # Memory
-//! The polyhedron costs about 250 bytes per vertex and the prepared hull about 130
-//! ([`Hull::heap_bytes`]). A plain collider costs the same where our dispatcher answers, and 12 bytes
-//! per vertex more to compare it with: up to 149 vertices, or whatever their number where the processor
-//! takes no digest of them.
+//! The polyhedron takes about 250 bytes per vertex, and the prepared hull about 130 ([`Hull::heap_bytes`]). A
+//! plain collider takes the same if our dispatcher answers its pairs, and 12 bytes per vertex more for the
+//! comparison: up to 149 vertices, or for any number if the processor has no instruction for the digest.
 
 mod bounds;
 mod features;
@@ -60,11 +58,10 @@ use crate::hull::build::polyhedron;
 use crate::hull::{self, Hull, HullError};
 use crate::support::{FaceId, Polytope};
 
-/// A convex hull to be used as `SharedShape::new(hull)`, with all that our queries need.
+/// A convex hull for colliders, used as `SharedShape::new(hull)`, with everything that our queries need.
 ///
-/// Lengths are in the units of the points it was built from (metres in rapier), positions in
-/// their frame, the collider's. Clones share their memory. Feature ids are those of
-/// [`hull`](Self::hull).
+/// Lengths are in the units of the points it was built from (metres in rapier), and positions in their frame,
+/// which is the collider's. Clones share their memory. Feature ids are those of [`hull`](Self::hull).
 ///
 /// ```
 /// use isa_gjk::{HullShape, IsaGjkDispatcher};
@@ -94,10 +91,10 @@ pub struct HullShape {
 #[derive(Debug)]
 struct Inner {
     hull: Hull,
-    /// What rapier saves, draws and sweeps.
+    /// The polyhedron that rapier saves, draws and sweeps.
     polyhedron: ConvexPolyhedron,
     local_aabb: Aabb,
-    /// For a density of one.
+    /// The mass properties for a density of one.
     mass: MassProperties,
 }
 
@@ -105,7 +102,7 @@ impl HullShape {
     /// The convex hull of a point cloud, see [`Hull::from_points`].
     ///
     /// # Errors
-    /// Names what is wrong with the points, see [`HullError`].
+    /// [`HullError`] says what is wrong with the points.
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
         let (vertices, triangles) = hull::surface_of_points(points)?;
         Self::from_triangles(vertices, &triangles)
@@ -114,7 +111,7 @@ impl HullShape {
     /// From the triangulated surface of a convex polytope, counter-clockwise from outside.
     ///
     /// # Errors
-    /// Names what is wrong with the surface, see [`HullError`].
+    /// [`HullError`] says what is wrong with the surface.
     ///
     /// ```
     /// use glam::Vec3;
@@ -137,16 +134,16 @@ impl HullShape {
             .try_into()
     }
 
-    /// The hull with each coordinate multiplied by that of `scale`; `None` if it is flat then.
+    /// The hull with each coordinate multiplied by that of `scale`; `None` if the result is flat.
     fn scaled(&self, scale: Vec3) -> Option<Self> {
         let polyhedron = &self.inner.polyhedron;
         let points: Vec<Vec3> = polyhedron.points().iter().map(|p| *p * scale).collect();
         let mut triangles = polyhedron::triangles(polyhedron)?;
         if scale.element_product() < 0.0 {
-            // A mirror image turns the other way.
+            // In a mirror image, triangles turn the other way.
             triangles.iter_mut().for_each(|t| t.swap(1, 2));
         }
-        // Rounding may have dented the surface: then a new one is spanned.
+        // If rounding dented the surface, a new one is built from the points.
         let scaled = Self::from_triangles(points.clone(), &triangles);
         scaled.or_else(|_| Self::from_points(&points)).ok()
     }
@@ -162,8 +159,7 @@ impl HullShape {
     }
 }
 
-/// The same hull with all that our queries need: for plain hulls, such as those of a world that
-/// was loaded.
+/// Prepares a plain hull, for instance one of a loaded world.
 ///
 /// ```
 /// use isa_gjk::HullShape;
@@ -182,8 +178,8 @@ impl TryFrom<ConvexPolyhedron> for HullShape {
     type Error = HullError;
 
     fn try_from(polyhedron: ConvexPolyhedron) -> Result<Self, HullError> {
-        // From the polyhedron even where the triangles are known: that is what the dispatcher
-        // does with the plain hull of a loaded world, whose features keep their ids by it.
+        // Built from the polyhedron even if the triangles are known. The dispatcher does the same with the
+        // plain hull of a loaded world, so feature ids stay the same.
         let hull = Hull::try_from(&polyhedron)?;
         let inner = Inner {
             local_aabb: polyhedron.local_aabb(),

@@ -14,7 +14,7 @@ use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{Cso, FaceId, Polytope, Support, VertexId};
 
-/// Up to this many points, a scan in f32, as parry does it, is quicker than a climb.
+/// Up to this many points, a scan in f32, as parry does it, is faster than a climb.
 const SCAN_UP_TO: usize = 40;
 
 impl Hull {
@@ -36,7 +36,7 @@ impl Hull {
 }
 
 impl HullShape {
-    /// The face whose plane a point is the farthest above, and how far.
+    /// The face above whose plane a point is farthest, and how far.
     fn nearest_plane(&self, point: DVec3) -> (FaceId, f64) {
         let hull = self.hull();
         let height = |f| hull.face_normal(f).dot(point) - hull.face_offset(f);
@@ -49,8 +49,8 @@ impl HullShape {
             )
     }
 
-    /// A point's projection: on the boundary, or on itself if it is inside of a `solid` hull.
-    /// And the feature that it lies on, if it is on the boundary.
+    /// The projection of a point to the boundary, or the point itself if it is inside a `solid` hull. Also
+    /// the feature on which the projection lies, if it is on the boundary.
     fn project(&self, point: Vector, solid: bool) -> (PointProjection, FeatureId) {
         let Some(pose) = RelativePose::new(&Pose::from_translation(point)) else {
             return (PointProjection::new(false, point), FeatureId::Unknown);
@@ -71,7 +71,7 @@ impl HullShape {
             Outcome::Overlapping(_) if solid => {
                 (PointProjection::new(true, point), FeatureId::Unknown)
             }
-            // Never apart: no distance is farther than infinity.
+            // It is never separated: no distance exceeds infinity.
             Outcome::Overlapping(_) | Outcome::Unsure(_) | Outcome::Separated(_) => {
                 let (on_face, face) = self.project_to_face(point.as_dvec3());
                 (on_face, FeatureId::Face(face.into()))
@@ -79,8 +79,7 @@ impl HullShape {
         }
     }
 
-    /// The projection of a point inside on the boundary: the nearest plane is that of the
-    /// nearest face.
+    /// The projection of an inner point to the boundary: the nearest plane is that of the nearest face.
     fn project_to_face(&self, point: DVec3) -> (PointProjection, FaceId) {
         let (face, height) = self.nearest_plane(point);
         let on_face = point - height * self.hull().face_normal(face);

@@ -9,9 +9,9 @@ use super::HullShape;
 use crate::hull::HullError;
 use crate::hull::build::polyhedron::{fingerprint, same_polyhedron};
 
-/// Puts [`HullShape`]s in the place of plain hulls, also of those that are parts of compounds, for
-/// worlds that were loaded or that others have built. Colliders that share a shape, or have equal
-/// hulls, share the new one: in a loaded world each collider has a shape of its own.
+/// Replaces plain hulls by [`HullShape`]s, including parts of compounds, for worlds that were loaded or built
+/// by others. Colliders that share a shape, or have equal hulls, share the new one: in a loaded world each
+/// collider has its own shape.
 ///
 /// ```
 /// use isa_gjk::{HullShape, PreparedShapes};
@@ -34,23 +34,23 @@ use crate::hull::build::polyhedron::{fingerprint, same_polyhedron};
 /// ```
 #[derive(Default)]
 pub struct PreparedShapes {
-    /// By the address of what was prepared.
+    /// Replacements by the address of the old shape.
     known: HashMap<usize, Replacement>,
-    /// By the fingerprint of the polyhedron.
+    /// Hull shapes by the fingerprint of the polyhedron.
     hulls: HashMap<u64, Vec<SharedShape>>,
     refused: Vec<HullError>,
 }
 
 struct Replacement {
     prepared: SharedShape,
-    /// Kept so that no other shape comes to its address.
+    /// Kept so that no other shape reuses its address.
     _original: SharedShape,
 }
 
 impl PreparedShapes {
-    /// The shape with its plain hulls prepared, or the shape itself if none of them can be. Round
-    /// hulls stay as they are. Compounds with [`CompoundFlags::FIX_INTERNAL_EDGES`] get plain hulls in
-    /// the place of `HullShape`s, and parry's default weld tolerance: it smooths only these.
+    /// The shape with its plain hulls prepared, or the shape itself if none of them can be. Round hulls stay
+    /// as they are. Compounds with [`CompoundFlags::FIX_INTERNAL_EDGES`] get plain hulls in place of
+    /// `HullShape`s, since parry smooths only these, and parry's default weld tolerance.
     pub fn prepare(&mut self, shape: &SharedShape) -> SharedShape {
         let address = Arc::as_ptr(&shape.0).addr();
         if let Some(known) = self.known.get(&address) {
@@ -65,7 +65,7 @@ impl PreparedShapes {
         prepared
     }
 
-    /// What was wrong with each plain hull that had to stay one.
+    /// Why each of the other plain hulls was not replaced.
     pub fn refused(&self) -> &[HullError] {
         &self.refused
     }
@@ -81,7 +81,7 @@ impl PreparedShapes {
         with_parts(compound, |part| self.prepare(part))
     }
 
-    /// A `HullShape` of this polyhedron, or of one that is equal to it.
+    /// A `HullShape` of this polyhedron, or of an equal one.
     fn hull(&mut self, polyhedron: &ConvexPolyhedron) -> Option<SharedShape> {
         let alike = self.hulls.entry(fingerprint(polyhedron)).or_default();
         let of_this = |shape: &&SharedShape| {
@@ -122,7 +122,7 @@ fn with_parts(
     is_new.then(|| SharedShape::new(Compound::with_flags(replaced, compound.flags(), None)))
 }
 
-/// A plain hull in the place of a `HullShape`; other shapes as they are.
+/// A plain hull in place of a `HullShape`; other shapes as they are.
 fn plain(part: &SharedShape) -> SharedShape {
     match part.as_shape::<HullShape>() {
         Some(hull) => SharedShape::new(hull.inner.polyhedron.clone()),

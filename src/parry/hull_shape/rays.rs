@@ -8,8 +8,8 @@ use super::HullShape;
 use crate::support::{FaceId, Polytope};
 
 impl RayCast for HullShape {
-    /// Cuts the ray by the planes of all faces. From inside of a hull that is not `solid`, the
-    /// normal points inwards, as for other shapes.
+    /// Intersects the ray with the planes of all faces. From inside a hull that is not `solid`, the normal
+    /// points inwards, as for other shapes.
     fn cast_local_ray_and_get_normal(
         &self,
         ray: &Ray,
@@ -28,7 +28,7 @@ impl RayCast for HullShape {
         };
         let time = crossing.time as Real;
         let normal = (side * self.hull().face_normal(crossing.face)).as_vec3();
-        // Beyond what f32 holds is nowhere.
+        // A time beyond the range of f32 is no hit.
         (time.is_finite() && time <= max_time_of_impact)
             .then(|| RayIntersection::new(time, normal, FeatureId::Face(crossing.face.into())))
     }
@@ -42,7 +42,8 @@ struct Crossing {
 }
 
 impl HullShape {
-    /// Where a ray's line enters and leaves the hull; `None` if it misses it or lies behind.
+    /// Where the line of a ray enters and leaves the hull; `None` if it misses the hull, or the hull is
+    /// behind.
     fn cut(&self, ray: &Ray) -> Option<(Crossing, Crossing)> {
         let hull = self.hull();
         let (origin, dir) = (ray.origin.as_dvec3(), ray.dir.as_dvec3());
@@ -64,7 +65,7 @@ impl HullShape {
                 return None;
             }
         }
-        // A ray whose direction is zero or NaN leaves by no face.
+        // A ray whose direction is zero or NaN leaves through no face.
         (entry.time <= exit.time && (0.0..f64::INFINITY).contains(&exit.time))
             .then_some((entry, exit))
     }

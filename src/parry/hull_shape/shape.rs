@@ -1,4 +1,4 @@
-//! What rapier asks of every shape.
+//! The interface that every shape has.
 
 use std::f32::consts::FRAC_PI_4;
 
@@ -52,7 +52,7 @@ impl Shape for HullShape {
     }
 
     fn ccd_angular_thickness(&self) -> Real {
-        // As parry has it for convex polyhedra.
+        // The same as for parry's convex polyhedra.
         FRAC_PI_4
     }
 

@@ -1,4 +1,4 @@
-//! Manifolds that parry's routine makes, with our hull.
+//! Manifolds that parry's routine computes, with our hull.
 
 use parry3d::math::Real;
 use parry3d::query::details::contact_manifold_pfm_pfm;
@@ -11,8 +11,8 @@ use crate::parry::scaled::Scale;
 use crate::support::Support;
 
 impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
-    /// To the routine for shapes with features, which searches with extreme vertices of the hull: ours
-    /// climbs to them.
+    /// Calls the routine for shapes with features. It searches with extreme vertices of our hull, which are
+    /// found by climbing.
     pub(super) fn update_by_parry<B: Support>(
         &mut self,
         pair: &Pair<'_, B>,

@@ -1,4 +1,4 @@
-//! The points of a manifold, and what they inherit from those of the frame before.
+//! The points of a manifold, and the data that they inherit from the previous frame.
 
 use glam::Vec3;
 use parry3d::math::Real;
@@ -13,7 +13,7 @@ use crate::query::{Feature, contact_keys};
 use crate::simd::{f32x4, u32x4};
 
 impl<M, C: Default + Copy> KernelManifold<'_, M, C> {
-    /// Replaces the contacts, and hands the data (the solver's impulses) of the old ones on.
+    /// Replaces the contacts. The new ones inherit the data (the solver's impulses) of the old ones.
     #[inline(always)]
     pub fn set_contacts(&mut self, normals: [Vec3; 2], contacts: &Contacts) {
         debug_assert!(contacts.len <= MAX_POINTS, "{contacts:?}");
@@ -45,8 +45,8 @@ impl<M, C: Default + Copy> KernelManifold<'_, M, C> {
     }
 }
 
-/// Where contacts are, and between what, as the manifold sees the shapes: coordinate by coordinate, those
-/// that mean nothing included.
+/// Positions and features of contacts in the manifold's order of the shapes, coordinate by coordinate. Unused
+/// entries mean nothing.
 struct ManifoldPoints {
     points: [[[f32; MAX_POINTS]; 3]; 2],
     distances: [f32; MAX_POINTS],
@@ -104,12 +104,11 @@ impl ManifoldPoints {
     }
 }
 
-/// What the contacts of a manifold are between, see [`contact_keys`]: by the first shape, and by the
-/// second.
+/// The keys of a manifold's contacts on the first and the second shape, see [`contact_keys`].
 struct FeatureKeys([u32x4; 2]);
 
 impl FeatureKeys {
-    /// Of the contacts of a manifold. Lanes beyond the last one have none.
+    /// The keys of a manifold's contacts. Lanes beyond the last contact have none.
     #[inline(always)]
     fn of<C>(contacts: &[TrackedContact<C>]) -> Self {
         if let Some([a, b, c, d]) = contacts.first_chunk() {
@@ -155,10 +154,10 @@ impl PartialEq for FeatureKeys {
 /// Index meaning "no old point matched".
 const NONE: usize = MAX_POINTS;
 
-/// For each new contact the old one whose data it takes over: that between the same features. What
-/// is left over goes to the nearest of the others, however far: an impulse in a wrong place of the
-/// patch is a better start for the solver than a body that rests on three contacts of four.
-/// (Of another dispatcher's manifold no more points than ours have hand their data on.)
+/// For each new contact, the old contact whose data it inherits: the one between the same features. A contact
+/// without such a match inherits from the nearest old contact that is left, however far it is: an impulse in
+/// a wrong place of the patch is a better start for the solver than a body that rests on three contacts of
+/// four. (From the manifold of another dispatcher, at most as many points as ours have pass on their data.)
 fn match_old_points<C>(
     old: &[TrackedContact<C>],
     old_ids: &FeatureKeys,
@@ -173,7 +172,7 @@ fn match_old_points<C>(
     for (i, matched) in matches[..count].iter_mut().enumerate() {
         let candidates = old_ids.same(new_ids, i) & left;
         *matched = (candidates.trailing_zeros() as usize).min(NONE);
-        // All but the lowest one.
+        // Clears the lowest bit.
         left ^= candidates & candidates.wrapping_neg();
     }
     if left == 0 {

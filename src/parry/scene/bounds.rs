@@ -21,15 +21,15 @@ use crate::support::{Cso, CsoVertex, Polytope, Support};
 use crate::tolerance::{BOUNDS_ROUNDING, GJK_CURVED_GAP, GJK_GAP_OF_SIZE};
 
 impl SeparationBounds {
-    /// Of a hull and a hull, cuboid, triangle, ball, capsule, segment, cylinder or cone, rounded or not, in
-    /// either order. `pos12` is the pose of shape 2 in the frame of shape 1.
+    /// Bounds for a hull and a hull, cuboid, triangle, ball, capsule, segment, cylinder or cone, rounded or
+    /// not, in either order. `pos12` is the pose of shape 2 in the frame of shape 1.
     ///
     /// The bounds differ by at most 2e-6 of the smaller shape's size, or with cylinders and cones 1e-6 of both
     /// sizes; or by 1e-9 of a large distance. They are about the hull as it was prepared.
     ///
     /// # Errors
     ///
-    /// [`QueryError`] names shapes that are not ours, and poses that are not finite.
+    /// [`QueryError`] reports unsupported shapes, and poses that are not finite.
     ///
     /// ```
     /// use isa_gjk::query::{Certificate, SeparationBounds};
@@ -128,7 +128,7 @@ impl BoundsQuery<'_> {
     }
 }
 
-/// The normal that separates most, and an upper bound of the signed distance with its certificate.
+/// The best separating normal, and an upper bound of the signed distance with its certificate.
 fn search<B: Support>(
     cso: &Cso<'_, Hull, B>,
     gap: f64,
@@ -152,8 +152,8 @@ fn search<B: Support>(
     Some((depth.normal, upper, certificate))
 }
 
-/// What the surface of an expansion proves: the ball within it, or at least that the shapes are no farther
-/// apart than the two points of its triangle that is nearest to the origin.
+/// What the surface of an expansion proves: it contains a ball, or at least the shapes are no farther apart
+/// than the two points on the triangle nearest to the origin.
 fn certify(scratch: &EpaScratch) -> Option<(f64, Certificate)> {
     let surface = scratch.surface();
     let distance = |face: &[CsoVertex; 3]| Preferred::nearest(&face.map(|v| v.w)).point.length();
@@ -161,7 +161,7 @@ fn certify(scratch: &EpaScratch) -> Option<(f64, Certificate)> {
         .clone()
         .min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
     let radius = distance(&nearest);
-    // Of the sphere of all directions: all of it if the origin is inside, else nothing.
+    // The solid angle of a closed surface: the whole sphere if the origin is inside, and otherwise zero.
     let seen: f64 = surface
         .clone()
         .map(|face| solid_angle(face.map(|v| v.w)))
@@ -180,16 +180,17 @@ fn certify(scratch: &EpaScratch) -> Option<(f64, Certificate)> {
     Some((points[0].distance(points[1]), Certificate::Points(points)))
 }
 
-/// Of a triangle seen from the origin, positive from the side on which it turns clockwise (van Oosterom,
-/// Strackee, *The solid angle of a plane triangle*, IEEE Transactions on Biomedical Engineering 30(2), 1983).
+/// The solid angle of a triangle seen from the origin, positive from the side on which it turns clockwise
+/// (van Oosterom, Strackee, *The solid angle of a plane triangle*, IEEE Transactions on Biomedical
+/// Engineering 30(2), 1983).
 fn solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     let [la, lb, lc] = [a, b, c].map(DVec3::length);
     let below = la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb;
     2.0 * a.dot(b.cross(c)).atan2(below)
 }
 
-/// The same with the shapes exchanged, in the frame of the second one. `pose` is its pose in the frame of the
-/// first.
+/// The bounds with the shapes exchanged, in the frame of the second one. `pose` is its pose in the frame of
+/// the first.
 fn reversed(bounds: SeparationBounds, pose: &RelativePose) -> SeparationBounds {
     let points = |[p, q]: [DVec3; 2]| [q, p].map(|point| pose.point_to_2(point));
     let normal = -pose.direction_to_2(bounds.normal);

@@ -1,4 +1,4 @@
-//! Answers as the caller sees them: in its order of the shapes, borders included.
+//! Answers for the caller: in its order of the shapes, with borders.
 
 use glam::DVec3;
 use parry3d::math::Real;
@@ -9,8 +9,8 @@ use crate::parry::pair::Pair;
 use crate::pose::{RelativePose, is_unit};
 use crate::query::{Proximity, SeparatingAxis, Sink};
 
-/// The nearest points of a pair, its rounded borders accounted for. Normals and points are in
-/// their own shapes' frames.
+/// The nearest points of a pair, including its rounded borders. Normals and points are in their own shapes'
+/// frames.
 pub(crate) struct CallerProximity {
     pub signed_distance: f64,
     pub normals: [DVec3; 2],
@@ -29,9 +29,9 @@ impl CallerProximity {
     }
 }
 
-/// How the kernels see a pair: the hull first, in whose frame they answer.
+/// The pair as the kernels see it: the hull first, in whose frame they answer.
 pub(crate) struct KernelFrame<'a> {
-    /// Of the other shape, in the frame of the hull.
+    /// The pose of the other shape in the frame of the hull.
     pose: &'a RelativePose,
     border_radii: [f64; 2],
     order: PairOrder,
@@ -46,7 +46,7 @@ impl<'a> KernelFrame<'a> {
         }
     }
 
-    /// From the normal and the points of the cores, in the frame of the hull.
+    /// Converts the normal and the points of the cores, which are in the frame of the hull.
     pub fn near(&self, normal: DVec3, [on_1, on_2]: [DVec3; 2], distance: f64) -> CallerProximity {
         debug_assert!(is_unit(normal), "no unit vector: {normal}");
         let normals = [normal, -self.pose.direction_to_2(normal)];
@@ -60,7 +60,7 @@ impl<'a> KernelFrame<'a> {
     }
 }
 
-/// Keeps the nearest points of shapes that are near each other, without memory of the pair.
+/// A sink that keeps the nearest points, without memory of the pair.
 pub(crate) struct NearestPoints<'a> {
     frame: KernelFrame<'a>,
     pub nearest: Option<CallerProximity>,

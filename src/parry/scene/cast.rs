@@ -55,7 +55,7 @@ impl PairVisitor for Cast<'_> {
         })
     }
 
-    /// How deep they overlap is parry's to say.
+    /// parry answers how deep they overlap.
     fn visit_curved<B: Support>(
         &mut self,
         pair: &Pair<'_, B>,
@@ -67,7 +67,7 @@ impl PairVisitor for Cast<'_> {
 }
 
 impl Cast<'_> {
-    /// `overlap` answers for shapes that are within the target distance from the beginning.
+    /// `overlap` answers for shapes that are within the target distance at the start.
     fn cast<B: Support>(
         &self,
         pair: &Pair<'_, B>,
@@ -84,7 +84,7 @@ impl Cast<'_> {
         let pose = pair.pose(pos12);
         let cso = pair.cso(&pose);
         let frame = KernelFrame::new(pair, &pose);
-        // That of the other shape as the hull sees it.
+        // The velocity of the other shape relative to the hull, in its frame.
         let velocity = self.velocity.as_dvec3();
         let velocity = if pair.order.is_reversed() {
             -pose.direction_to_1(velocity)
@@ -101,7 +101,7 @@ impl Cast<'_> {
         match impact {
             RayCast::Miss => Ok(None),
             RayCast::Hit(impact) => Ok(Some(hit_at(&impact, velocity, &frame))),
-            // Also false for NaN.
+            // This is also false for NaN.
             RayCast::Overlap if self.options.max_time_of_impact >= 0.0 => {
                 overlap(&cso, velocity, &frame)
             }
@@ -109,13 +109,14 @@ impl Cast<'_> {
         }
     }
 
-    /// Not negative, and not NaN.
+    /// Neither negative nor NaN.
     fn target_distance(&self) -> Real {
         self.options.target_distance.max(0.0)
     }
 
-    /// Shapes that touch, or are within the target distance, from the beginning: they meet at time 0 if they
-    /// approach, or if the cast is to stop there in any case. What departs, or slides along, meets nothing.
+    /// Shapes that touch, or are within the target distance, at the start: they meet at time 0 if they
+    /// approach, or if the cast shall stop there in any case. Shapes that separate or slide along each other
+    /// meet nothing.
     fn overlap<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,

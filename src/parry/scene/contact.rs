@@ -67,7 +67,7 @@ impl PairVisitor for ContactQuery<'_> {
         Ok(sink.nearest.map(|near| near.contact()))
     }
 
-    /// How deep they overlap is parry's to say. Where they only touch it may not know.
+    /// parry answers how deep they overlap. If they only touch, it may fail.
     fn visit_curved<B: Support>(
         &mut self,
         pair: &Pair<'_, B>,

@@ -1,5 +1,5 @@
-//! Queries of scenes: a convex pair is ours if it has a hull, shapes with parts are taken apart, and the
-//! fallback gets the rest.
+//! Scene queries: we answer convex pairs with a hull, shapes with parts are taken apart, and the fallback
+//! gets the rest.
 
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::ShapeCastOptions;

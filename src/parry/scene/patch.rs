@@ -17,17 +17,17 @@ use crate::stats::Cost;
 use crate::support::Polytope;
 
 impl ContactPatch {
-    /// Where a hull and a hull, cuboid, triangle, ball, capsule or segment, rounded or not, in either order,
-    /// touch, overlap, or are at most `prediction` apart; `None` if they are farther apart. `pos12` is the
+    /// The patch of a hull and a hull, cuboid, triangle, ball, capsule or segment, rounded or not, in either
+    /// order, if they touch, overlap, or are at most `prediction` apart; otherwise `None`. `pos12` is the
     /// pose of shape 2 in the frame of shape 1.
     ///
-    /// The deepest point is exact to 1e-5 of the size, and so are the others where faces meet. Where corners or
-    /// edges meet, the polygon is that of the faces next to them that face each other most, as far as these
-    /// are within `prediction`.
+    /// The deepest point is exact to 1e-5 of the size, and if faces meet, so are the others. If corners or
+    /// edges meet, the polygon is that of their faces that face each other most, as far as these are within
+    /// `prediction`.
     ///
     /// # Errors
     ///
-    /// [`QueryError`] names shapes that are not ours, and poses that are not finite.
+    /// [`QueryError`] reports unsupported shapes, and poses that are not finite.
     ///
     /// ```
     /// use isa_gjk::query::ContactPatch;

@@ -1,7 +1,7 @@
 //! Queries without memory: distance, closest points and intersection of hulls.
 //!
-//! Only `contact` needs to know how deep shapes overlap; these end with GJK. Shapes that are apart by no more
-//! than [`MIN_DIRECTED_DISTANCE`](crate::tolerance::MIN_DIRECTED_DISTANCE) touch, for all of them.
+//! Only `contact` needs the depth of an overlap; these queries end with GJK. For all of them, shapes touch if
+//! they are at most [`MIN_DIRECTED_DISTANCE`](crate::tolerance::MIN_DIRECTED_DISTANCE) apart.
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ClosestPoints, Unsupported};
@@ -27,7 +27,7 @@ pub(crate) fn intersect(
     Ok(matches!(separation, Separation::Overlapping))
 }
 
-/// Zero where the shapes overlap.
+/// The distance; zero if the shapes overlap.
 pub(crate) fn distance(
     pos12: &Pose,
     shape_1: &dyn Shape,
@@ -57,18 +57,18 @@ pub(crate) fn closest_points(
     })
 }
 
-/// What lies between two shapes.
+/// The gap between two shapes.
 pub(super) enum Separation {
-    /// Nothing: they touch or overlap.
+    /// There is none: they touch or overlap.
     Overlapping,
-    /// A gap, and where it is narrowest.
+    /// A gap, and its nearest points.
     Within(CallerProximity),
-    /// More than was asked about.
+    /// More than the maximum distance.
     Beyond,
 }
 
 impl Separation {
-    /// Up to the distance `touching` the shapes touch.
+    /// Shapes up to the distance `touching` apart touch.
     fn of(near: CallerProximity, touching: f64) -> Self {
         if near.signed_distance <= touching {
             Self::Overlapping
@@ -97,7 +97,8 @@ pub(super) struct SeparationQuery<'a> {
 }
 
 impl SeparationQuery<'_> {
-    /// Of a hull and any convex shape; `gap` is GJK's, relative to their size.
+    /// The separation of a hull and any convex shape. GJK's bounds may differ by `gap`, relative to their
+    /// size.
     pub fn separation<B: Support>(
         &self,
         pair: &Pair<'_, B>,
@@ -106,7 +107,7 @@ impl SeparationQuery<'_> {
     ) -> Result<Separation, Unsupported> {
         let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
-        // Within its gap GJK does not know: there, too, they touch, for all queries.
+        // Within this gap GJK cannot tell. There, too, they touch, for all queries.
         let slack = gap * cso.size();
         let max_distance = pair.core_distance(self.max_distance, cso.size()) + slack;
         let mut sink = NearestPoints::new(pair, &pose);
@@ -155,7 +156,7 @@ impl PairVisitor for SeparationQuery<'_> {
     }
 }
 
-/// Where a hull is deepest in a half-space; `None` if it is farther away than `max_distance`.
+/// The deepest point of a hull in a half-space; `None` if it is farther away than `max_distance`.
 pub(super) fn over_half_space(
     pair: &Pair<'_, HalfSpace>,
     pos12: &Pose,

@@ -1,4 +1,4 @@
-//! Why there is no answer about two shapes.
+//! Why a query about two shapes has no answer.
 
 use parry3d::math::Pose;
 use parry3d::shape::Shape;
