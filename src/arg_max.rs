@@ -24,29 +24,36 @@ pub(crate) trait Lanes: Copy + Default + BitAnd<Output = Self> {
     fn greatest(self, ids: Self) -> ArgMax<Self::Value>;
 }
 
+/// What is the same for both types.
+macro_rules! same_lanes {
+    ($value:ty, $ids:ty) => {
+        type Value = $value;
+        type Ids = $ids;
+
+        #[inline(always)]
+        fn splat(value: $value) -> Self {
+            Self::splat(value)
+        }
+
+        #[inline(always)]
+        fn from_bits(ids: $ids) -> Self {
+            bytemuck::cast(ids)
+        }
+
+        #[inline(always)]
+        fn greater_than(self, others: Self) -> Self {
+            self.simd_gt(others)
+        }
+
+        #[inline(always)]
+        fn select(self, yes: Self, no: Self) -> Self {
+            self.bitselect(yes, no)
+        }
+    };
+}
+
 impl Lanes for f64x4 {
-    type Value = f64;
-    type Ids = u64x4;
-
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        Self::splat(value)
-    }
-
-    #[inline(always)]
-    fn from_bits(ids: u64x4) -> Self {
-        bytemuck::cast(ids)
-    }
-
-    #[inline(always)]
-    fn greater_than(self, others: Self) -> Self {
-        self.simd_gt(others)
-    }
-
-    #[inline(always)]
-    fn select(self, yes: Self, no: Self) -> Self {
-        self.bitselect(yes, no)
-    }
+    same_lanes!(f64, u64x4);
 
     /// Compares lanes 0 and 2 with 1 and 3, and then the two winners: this dependency chain is shorter than
     /// lane by lane.
@@ -71,28 +78,7 @@ impl Lanes for f64x4 {
 }
 
 impl Lanes for f32x4 {
-    type Value = f32;
-    type Ids = u32x4;
-
-    #[inline(always)]
-    fn splat(value: f32) -> Self {
-        Self::splat(value)
-    }
-
-    #[inline(always)]
-    fn from_bits(ids: u32x4) -> Self {
-        bytemuck::cast(ids)
-    }
-
-    #[inline(always)]
-    fn greater_than(self, others: Self) -> Self {
-        self.simd_gt(others)
-    }
-
-    #[inline(always)]
-    fn select(self, yes: Self, no: Self) -> Self {
-        self.bitselect(yes, no)
-    }
+    same_lanes!(f32, u32x4);
 
     #[inline(always)]
     fn greatest(self, ids: Self) -> ArgMax<f32> {

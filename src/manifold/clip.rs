@@ -300,6 +300,30 @@ mod tests {
         outline.iter().zip(ends).flat_map(along).collect()
     }
 
+    /// Ellipses; in some rounds one of them is equal, divided or thin.
+    fn many_corners(round: u32, rng: &mut oorandom::Rand64) -> [Vec<Vec2>; 2] {
+        let counts = [(); 2].map(|()| rng.rand_range(3..90) as usize);
+        let [mut window, mut subject] = counts.map(|count| ellipse(count, rng));
+        let tiny = Vec2::splat(6e-8 * (round % 7) as f32);
+        match round % 6 {
+            0 => subject = window.iter().map(|&p| p + tiny).collect(),
+            1 => window = divided(&SQUARE.map(Vec2::from), 20),
+            2 => {
+                window = divided(&window[..3], 30);
+                subject = divided(&subject[..3], 25);
+            }
+            3 => subject.iter_mut().for_each(|p| p.y = 0.3 + 1e-3 * p.y),
+            4 => {
+                let turn = Vec2::from_angle(rng.rand_float() as f32);
+                window = divided(&SQUARE.map(Vec2::from), 20);
+                window.iter_mut().for_each(|p| *p = p.rotate(turn));
+                subject = window.iter().map(|p| *p + tiny).collect();
+            }
+            _ => {}
+        }
+        [window, subject]
+    }
+
     /// Polygons of many corners, of which only near sides are compared: also thin and equal ones, and such
     /// with straight runs. No corner is missing that is found by comparing all sides.
     #[test]
@@ -307,25 +331,7 @@ mod tests {
         let mut rng = oorandom::Rand64::new(3);
         let mut by_sectors = 0;
         for round in 0..600 {
-            let counts = [(); 2].map(|()| rng.rand_range(3..90) as usize);
-            let [mut window, mut subject] = counts.map(|count| ellipse(count, &mut rng));
-            let tiny = Vec2::splat(6e-8 * (round % 7) as f32);
-            match round % 6 {
-                0 => subject = window.iter().map(|&p| p + tiny).collect(),
-                1 => window = divided(&SQUARE.map(Vec2::from), 20),
-                2 => {
-                    window = divided(&window[..3], 30);
-                    subject = divided(&subject[..3], 25);
-                }
-                3 => subject.iter_mut().for_each(|p| p.y = 0.3 + 1e-3 * p.y),
-                4 => {
-                    let turn = Vec2::from_angle(rng.rand_float() as f32);
-                    window = divided(&SQUARE.map(Vec2::from), 20);
-                    window.iter_mut().for_each(|p| *p = p.rotate(turn));
-                    subject = window.iter().map(|p| *p + tiny).collect();
-                }
-                _ => {}
-            }
+            let [window, mut subject] = many_corners(round, &mut rng);
             subject.reverse();
             let mut clipper = Clipper {
                 window: polygon(&window),

@@ -137,7 +137,7 @@ fn words(line: &str) -> impl Iterator<Item = &str> {
 fn forced_inlining_has_a_reason() {
     let is_forced = |line: &str| line.contains("#[inline(always)]");
     let found = places(|line, _| is_forced(line));
-    at_most(185, "`inline(always)`", &found);
+    at_most(180, "`inline(always)`", &found);
     let has_no_note = |before: &[&str]| !before.iter().any(|line| line.contains("// perf: "));
     let mut found = places(|line, before| is_forced(line) && has_no_note(before));
     found.retain(|place| {
@@ -229,6 +229,47 @@ fn files_are_short() {
         (count > LONG_FILE).then(|| format!("{path}: {count} lines"))
     });
     at_most(3, "files are long", &long.collect::<Vec<_>>());
+}
+
+/// Where each function of a file begins, and how many lines it has.
+fn functions(text: &str) -> Vec<(usize, usize)> {
+    let all: Vec<&str> = text.lines().collect();
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    let is_function =
+        |line: &str| words(line).take(6).any(|word| word == "fn") && !line.contains("//");
+    let mut found = Vec::new();
+    for (first, line) in all.iter().enumerate().filter(|(_, line)| is_function(line)) {
+        let same_column = |other: &&&str| indent(other) == indent(line) && !other.trim().is_empty();
+        let after = all[first + 1..].iter();
+        let closing = after
+            .clone()
+            .position(|other| same_column(&other) && other.trim() == "}");
+        let next = after
+            .clone()
+            .position(|other| same_column(&other) && is_function(other));
+        if let Some(closing) = closing
+            && next.is_none_or(|next| closing < next)
+        {
+            found.push((first + 1, closing + 2));
+        }
+    }
+    found
+}
+
+#[test]
+fn functions_are_short() {
+    let lengths = files("src", "rs").into_iter().flat_map(|(path, text)| {
+        let found = functions(&text).into_iter();
+        found.map(move |(line, length)| (length, format!("{path}:{line}: {length} lines")))
+    });
+    let mut long: Vec<(usize, String)> = lengths.filter(|(length, _)| *length > 40).collect();
+    long.sort();
+    let places: Vec<String> = long.iter().map(|(_, place)| place.clone()).collect();
+    at_most(14, "functions are long", &places);
+    assert!(
+        long.last().is_none_or(|(length, _)| *length <= 60),
+        "{long:?}"
+    );
 }
 
 /// The name of a type that a line defines.

@@ -25,6 +25,18 @@ pub(in crate::hull) struct MergedFaces {
     pub overtopped: Vec<u16>,
 }
 
+impl MergedFaces {
+    /// Notes a face, and the triangles that it was made of.
+    fn note(&mut self, face: u16, triangles: &[u32], plane: &FacePlane) {
+        for &t in triangles {
+            self.face_of[t as usize] = face;
+        }
+        if plane.is_overtopped {
+            self.overtopped.push(face);
+        }
+    }
+}
+
 impl Faces {
     /// Merges the triangles of a surface. Faces are in the order of their first triangles, so that faces
     /// around a vertex lie as near in memory as the triangles do.
@@ -33,23 +45,20 @@ impl Faces {
         let surface = AreaVectors::new(points, mesh.triangles, radius);
         let flat = NearlyFlatEdges::new(mesh, &surface);
         let regions = CoplanarRegions::grow(points, mesh, &surface, &flat, radius);
-        let mut face_of = vec![0_u16; count];
-        let mut overtopped = Vec::new();
+        let mut merged = MergedFaces {
+            face_of: vec![0; count],
+            seeds: Vec::new(),
+            overtopped: Vec::new(),
+        };
         let mut faces = Builder::with_capacity(count);
         let mut faces_of = vec![0..0; regions.len()];
         let mut add = |polygon: &[HalfEdge], triangles: &[u32]| {
-            let face = faces.polygons.len() as u16;
-            for &t in triangles {
-                face_of[t as usize] = face;
-            }
+            let plane = FacePlane::new(points, mesh, polygon, radius);
+            merged.note(faces.polygons.len() as u16, triangles, &plane);
             let corner = |&side: &HalfEdge| FaceCorner {
                 vertex: mesh.start(side) as u16,
                 slot: mesh.edge_slot(side),
             };
-            let plane = FacePlane::new(points, mesh, polygon, radius);
-            if plane.is_overtopped {
-                overtopped.push(face);
-            }
             faces.add(&plane, polygon.iter().map(corner));
         };
         let mut polygon = Vec::new();
@@ -59,11 +68,11 @@ impl Faces {
                 continue;
             }
             let region = regions.triangles(r as usize);
-            let merged = region.len() > 1
+            let is_one_face = region.len() > 1
                 && regions.boundary(mesh, region, &mut polygon)
                 && is_convex(points, mesh, &polygon, radius);
             let first = face_count;
-            if merged {
+            if is_one_face {
                 add(&polygon, region);
                 face_count += 1;
             } else {
@@ -77,11 +86,7 @@ impl Faces {
         }
         let faces = faces.finish(face_count.into(), FaceClusters::default());
         let largest_first = faces_of.into_iter().flatten();
-        let merged = MergedFaces {
-            seeds: faces.cluster_seeds(mesh, &flat, &face_of, largest_first),
-            face_of,
-            overtopped,
-        };
+        merged.seeds = faces.cluster_seeds(mesh, &flat, &merged.face_of, largest_first);
         (faces, merged)
     }
 

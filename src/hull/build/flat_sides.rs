@@ -83,8 +83,13 @@ impl<'a> Sides<'a> {
         before.dot(third(h)).abs() <= FLAT_EDGE * self.radius * area
     }
 
-    /// Adds the polygon around a triangle.
-    fn add(&mut self, triangle: usize, is_flat: &[bool], seen: &mut [bool]) -> Option<()> {
+    /// The border of the polygon around a triangle, counter-clockwise from the lowest corner.
+    fn border(
+        &mut self,
+        triangle: usize,
+        is_flat: &[bool],
+        seen: &mut [bool],
+    ) -> Option<Vec<HalfEdge>> {
         let (mut stack, mut border) = (vec![triangle], Vec::new());
         let mut count = 0;
         seen[triangle] = true;
@@ -104,6 +109,12 @@ impl<'a> Sides<'a> {
             return None;
         }
         self.sort(&mut border)?;
+        Some(border)
+    }
+
+    /// Adds the polygon around a triangle.
+    fn add(&mut self, triangle: usize, is_flat: &[bool], seen: &mut [bool]) -> Option<()> {
+        let border = self.border(triangle, is_flat, seen)?;
         let polygon: Vec<u32> = border.iter().map(|&h| self.mesh.start(h)).collect();
         let corner = |i: usize| self.points[polygon[i % polygon.len()] as usize];
         let fan = (1..polygon.len() - 1)

@@ -131,7 +131,7 @@ struct Triangulation {
 
 impl Triangulation {
     fn of(polyhedron: &ConvexPolyhedron) -> Option<Self> {
-        let (points, edges) = (polyhedron.points(), polyhedron.edges());
+        let points = polyhedron.points();
         if points.iter().any(|p| !p.is_finite()) {
             return None;
         }
@@ -143,30 +143,14 @@ impl Triangulation {
         let mut triangles = Vec::with_capacity(2 * points.len());
         let mut flat_edges = Vec::new();
         let mut incident = Vec::new();
-        for v in 0..points.len() {
-            let here = points[v].as_dvec3();
-            let outward = (here - inside).try_normalize()?;
-            let (x, y) = outward.any_orthonormal_pair();
-            // These turn counter-clockwise about `outward`.
-            let y = if x.cross(y).dot(outward) > 0.0 { y } else { -y };
-            let v = v as u32;
+        for (v, ends) in (0..).zip(first.windows(2)) {
             incident.clear();
-            incident.extend(
-                rows[first[v as usize]..first[v as usize + 1]]
-                    .iter()
-                    .map(|&id| {
-                        let [a, b] = edges[id as usize].vertices;
-                        let end = a ^ b ^ v;
-                        let edge = points[end as usize].as_dvec3() - here;
-                        let seen = DVec2::new(edge.dot(x), edge.dot(y));
-                        IncidentEdge {
-                            id,
-                            end,
-                            edge,
-                            seen,
-                        }
-                    }),
-            );
+            incident.extend(incident_edges(
+                polyhedron,
+                &rows[ends[0]..ends[1]],
+                v,
+                inside,
+            )?);
             incident.sort_unstable_by(|a, b| by_angle(a.seen, b.seen));
             for (i, side) in incident.iter().enumerate() {
                 let next = &incident[(i + 1) % incident.len()];
@@ -206,6 +190,32 @@ struct IncidentEdge {
     edge: DVec3,
     /// From outside.
     seen: DVec2,
+}
+
+/// The edges of a vertex, whose ids are `row`, seen from outside. `None` if the vertex is `inside`.
+fn incident_edges(
+    polyhedron: &ConvexPolyhedron,
+    row: &[u32],
+    vertex: u32,
+    inside: DVec3,
+) -> Option<impl Iterator<Item = IncidentEdge>> {
+    let at = |vertex: u32| polyhedron.points()[vertex as usize].as_dvec3();
+    let here = at(vertex);
+    let outward = (here - inside).try_normalize()?;
+    let (x, y) = outward.any_orthonormal_pair();
+    // These turn counter-clockwise about `outward`.
+    let y = if x.cross(y).dot(outward) > 0.0 { y } else { -y };
+    Some(row.iter().map(move |&id| {
+        let [a, b] = polyhedron.edges()[id as usize].vertices;
+        let end = a ^ b ^ vertex;
+        let edge = at(end) - here;
+        IncidentEdge {
+            id,
+            end,
+            edge,
+            seen: DVec2::new(edge.dot(x), edge.dot(y)),
+        }
+    }))
 }
 
 /// Whether the surface bends at the second of three successive edges at a vertex by less than a height.

@@ -34,10 +34,6 @@ impl CoplanarRegions {
         if flat.is_empty() {
             return Self::single(count);
         }
-        // The bits of non-negative numbers sort as the numbers do.
-        let largest_first = |area: &f64| Reverse(area.to_bits());
-        let mut seeds: Vec<_> = surface.areas.iter().map(largest_first).zip(0..).collect();
-        seeds.sort_unstable();
         let mut regions = Self {
             triangles: Vec::with_capacity(count),
             first: vec![0],
@@ -54,7 +50,7 @@ impl CoplanarRegions {
                 (!turned || surface.is_sliver[t]) && mesh.triangles[t].iter().all(is_near)
             }
         };
-        for (_, seed) in seeds {
+        for seed in largest_first(&surface.areas) {
             if regions.of[seed as usize] != FREE {
                 continue;
             }
@@ -154,6 +150,15 @@ impl CoplanarRegions {
             }
         }
     }
+}
+
+/// The triangles, the largest first.
+fn largest_first(areas: &[f64]) -> impl Iterator<Item = u32> {
+    // The bits of non-negative numbers sort as the numbers do.
+    let bits = areas.iter().map(|area| Reverse(area.to_bits()));
+    let mut triangles: Vec<_> = bits.zip(0..).collect();
+    triangles.sort_unstable();
+    triangles.into_iter().map(|(_, triangle)| triangle)
 }
 
 /// The plane of some triangles: its normal, and the centroid of the triangles.

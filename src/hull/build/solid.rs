@@ -94,26 +94,14 @@ impl Hull {
         };
         validate_no_bowl(climb, &faces, &merged.overtopped)?;
         faces.add_clusters(&exact, &graph, &merged);
-        let search = match Scan::new(&points, center, radius) {
-            Some(scan) => SupportSearch::Scan(scan),
-            None => {
-                graph.mark_plateau_search(|graph, v| {
-                    at_flat_edge[v.index()] || climb::has_short_edge(&exact, graph, radius, v)
-                });
-                let climb = HillClimb {
-                    points: &points,
-                    graph: &graph,
-                    center,
-                    radius,
-                };
-                SupportSearch::Climb(StartTable::new(points.len(), |dir, start| {
-                    climb::extreme_vertex(climb, dir, start, &mut Cost::default())
-                }))
-            }
-        };
+        if points.len() > scan::LARGEST {
+            graph.mark_plateau_search(|graph, v| {
+                at_flat_edge[v.index()] || climb::has_short_edge(&exact, graph, radius, v)
+            });
+        }
         let hull = Self {
+            search: SupportSearch::new(&points, &graph, center, radius),
             points: points.into(),
-            search,
             graph,
             faces,
             center,
@@ -129,5 +117,23 @@ impl Hull {
             self.face_offset(f) - self.face_normal(f).dot(self.center) > MIN_EXTENT * self.radius
         });
         deep_inside.then_some(()).ok_or(HullError::Flat)
+    }
+}
+
+impl SupportSearch {
+    /// The faster search: a scan for a small hull, and climbs for a large one.
+    fn new(points: &[Vec3], graph: &EdgeGraph, center: DVec3, radius: f64) -> Self {
+        if let Some(scan) = Scan::new(points, center, radius) {
+            return Self::Scan(scan);
+        }
+        let climb = HillClimb {
+            points,
+            graph,
+            center,
+            radius,
+        };
+        Self::Climb(StartTable::new(points.len(), |dir, start| {
+            climb::extreme_vertex(climb, dir, start, &mut Cost::default())
+        }))
     }
 }

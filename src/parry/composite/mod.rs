@@ -42,13 +42,26 @@ where
     C: Default + Copy + Send + Sync,
     F: PersistentQueryDispatcher<M, C>,
 {
-    use ShapeType::{HeightField, TriMesh, Voxels};
     // parry's routines assert that boxes are not loosened by a negative length.
     let prediction = prediction.max(0.0);
-    let [s1, s2] = shapes;
-    if by_us(updater, pos12, shapes, prediction, manifolds, workspace) {
-        return true;
-    }
+    by_us(updater, pos12, shapes, prediction, manifolds, workspace)
+        || by_parry(dispatcher, pos12, shapes, prediction, manifolds, workspace)
+}
+
+/// By parry's routines, which take a shape apart. `false` if none has parts.
+fn by_parry<M, C>(
+    dispatcher: &dyn PersistentQueryDispatcher<M, C>,
+    pos12: &Pose,
+    shapes @ [s1, s2]: [&dyn Shape; 2],
+    prediction: Real,
+    manifolds: &mut Vec<ContactManifold<M, C>>,
+    workspace: &mut Option<ContactManifoldsWorkspace>,
+) -> bool
+where
+    M: Default + Clone + Send + Sync,
+    C: Default + Copy + Send + Sync,
+{
+    use ShapeType::{HeightField, TriMesh, Voxels};
     let composites = [s1.as_composite_shape(), s2.as_composite_shape()];
     if let [Some(c1), Some(c2)] = composites {
         contact_manifolds_composite_shape_composite_shape(

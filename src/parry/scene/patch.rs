@@ -6,12 +6,13 @@ use parry3d::query::Unsupported;
 use parry3d::shape::Shape;
 
 use super::why::why_not;
-use crate::manifold;
+use crate::manifold::{self, PatchCorner};
 use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
 use crate::parry::scene::caller::{CallerProximity, KernelFrame};
 use crate::parry::workspace::Workspace;
 use crate::query::{
-    Answer, ContactId, ContactPatch, Feature, PairMemory, PatchVertex, Query, QueryError,
+    Answer, ContactId, ContactPatch, Feature, PairMemory, PatchVertex, Proximity, Query,
+    QueryError, RelativePose,
 };
 use crate::stats::Cost;
 use crate::support::Polytope;
@@ -88,33 +89,43 @@ impl PairVisitor for PatchQuery<'_> {
         let Answer::Near(near) = answer else {
             return Ok(None);
         };
-        let frame = KernelFrame::new(pair, &pose);
-        let place = |on_1: DVec3, distance: f64| {
-            let on_2 = on_1 + near.normal * distance;
-            frame.near(near.normal, [on_1, on_2], distance)
-        };
-        let vertex = |place: &CallerProximity, features: [Feature; 2]| {
-            let features = pair.order.to_caller(features);
-            PatchVertex {
-                on_1: place.points[0],
-                distance: place.signed_distance,
-                features,
-                id: ContactId::new(features),
-            }
-        };
         let corners = manifold::contact_polygon(&cso, &near, max_distance, &mut workspace.clip);
-        let corners = corners.into_iter();
-        let mut vertices: Vec<PatchVertex> = corners
-            .map(|corner| vertex(&place(corner.on_1, corner.distance), corner.features))
-            .collect();
-        if pair.order.is_reversed() {
-            vertices.reverse();
-        }
-        let deepest = place(near.on_1, near.signed_distance);
-        Ok(Some(ContactPatch::new(
-            deepest.normals[0],
-            vertex(&deepest, near.features),
-            vertices,
-        )))
+        Ok(Some(to_caller(pair, &pose, &near, &corners)))
     }
+}
+
+/// The patch as the caller sees it.
+fn to_caller<B: Polytope>(
+    pair: &Pair<'_, B>,
+    pose: &RelativePose,
+    near: &Proximity,
+    corners: &[PatchCorner],
+) -> ContactPatch {
+    let frame = KernelFrame::new(pair, pose);
+    let place = |on_1: DVec3, distance: f64| {
+        let on_2 = on_1 + near.normal * distance;
+        frame.near(near.normal, [on_1, on_2], distance)
+    };
+    let vertex = |place: &CallerProximity, features: [Feature; 2]| {
+        let features = pair.order.to_caller(features);
+        PatchVertex {
+            on_1: place.points[0],
+            distance: place.signed_distance,
+            features,
+            id: ContactId::new(features),
+        }
+    };
+    let mut vertices: Vec<PatchVertex> = corners
+        .iter()
+        .map(|corner| vertex(&place(corner.on_1, corner.distance), corner.features))
+        .collect();
+    if pair.order.is_reversed() {
+        vertices.reverse();
+    }
+    let deepest = place(near.on_1, near.signed_distance);
+    ContactPatch::new(
+        deepest.normals[0],
+        vertex(&deepest, near.features),
+        vertices,
+    )
 }

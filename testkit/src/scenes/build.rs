@@ -4,13 +4,12 @@ use oorandom::Rand32;
 use rapier3d::prelude::*;
 
 use super::containers::WALL;
+use super::filler::{Filler, GAP, reach, square_cell};
 use super::world::World;
 use super::{Scene, SceneParams, containers, families, hulls, standing};
 
 /// Distance between the centres of neighbours at the start, in bounding diameters.
 const SPACING: Real = 1.1;
-/// Below and between the parts of a tower, so that it does not start in exact touch.
-pub(super) const GAP: Real = 0.001;
 const TOWER: usize = 8;
 const COIN_TOWER: usize = 16;
 const COIN_HALF_HEIGHT: Real = 0.03;
@@ -141,27 +140,6 @@ fn pair_of_hulls(hulls: &[SharedShape], i: usize) -> SharedShape {
     ])
 }
 
-/// No point of the shape is farther from its origin.
-fn reach(shape: &SharedShape) -> Real {
-    let sphere = shape.compute_local_bounding_sphere();
-    sphere.center.length() + sphere.radius
-}
-
-/// Fills a world with one scene.
-pub(super) struct Filler<'a> {
-    pub world: &'a mut World,
-    /// What the bodies are placed by.
-    shapes: Vec<SharedShape>,
-    /// The same shapes as they come into the world.
-    colliders: Vec<SharedShape>,
-    /// The largest reach of a shape.
-    pub reach: Real,
-    random: Rand32,
-    pub bodies: usize,
-    /// A pile that falls asleep costs nothing, and its figures would say so of both worlds.
-    pub can_sleep: bool,
-}
-
 impl Filler<'_> {
     /// A drum that the bodies fill to about a third.
     fn drum(&mut self) {
@@ -274,37 +252,6 @@ impl Filler<'_> {
             collider.set_restitution_combine_rule(CoefficientCombineRule::Max);
         }
     }
-
-    pub fn shape(&self, i: usize) -> &SharedShape {
-        &self.shapes[i % self.shapes.len()]
-    }
-
-    /// Body `i`, and its collider.
-    pub fn insert(&mut self, i: usize, pose: Pose) -> (RigidBodyHandle, ColliderHandle) {
-        let body = RigidBodyBuilder::dynamic()
-            .pose(pose)
-            .can_sleep(self.can_sleep);
-        let shape = self.colliders[i % self.colliders.len()].clone();
-        let collider = ColliderBuilder::new(shape);
-        self.world.physics.insert(body, collider)
-    }
-
-    /// A random number between `-limit` and `limit`.
-    pub fn within(&mut self, limit: Real) -> Real {
-        limit * (2.0 * self.random.rand_float() - 1.0)
-    }
-
-    /// A pose at `place`, turned at random.
-    pub fn tumbled(&mut self, place: Vector) -> Pose {
-        let axis_angle = Vector::new(self.within(2.0), self.within(2.0), self.within(2.0));
-        Pose::new(place, axis_angle)
-    }
-}
-
-/// Cell `i` of a square of `side` times `side` cells around the origin.
-pub(super) fn square_cell(i: usize, side: usize, spacing: Real) -> (Real, Real) {
-    let along = |step: usize| (step as Real - (side - 1) as Real / 2.0) * spacing;
-    (along(i % side), along(i / side))
 }
 
 /// Places inside a cylinder around the z axis, from the bottom up.

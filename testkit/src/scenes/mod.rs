@@ -3,6 +3,7 @@
 mod build;
 mod containers;
 mod families;
+mod filler;
 mod flat;
 pub mod hulls;
 mod standing;

@@ -4,8 +4,8 @@ use std::f32::consts::PI;
 
 use rapier3d::prelude::*;
 
-use super::build::{Filler, GAP, square_cell};
 use super::containers;
+use super::filler::{Filler, GAP, square_cell};
 
 /// Half extents of a brick, in metres, before it is scaled.
 pub(super) const BRICK: Vector = Vector::new(0.4, 0.15, 0.2);
