@@ -1,7 +1,7 @@
-//! Instructions per warm manifold update, counted by callgrind: a gate that no noise can hide
-//! behind. `cargo bench --bench instructions` compares with `benches/instructions.json` and fails
-//! where a count has grown by more than the tolerance; `-- --accept` writes the file anew. Counts
-//! depend on the compiler a little, on the machine hardly.
+//! Instructions per warm manifold update, counted by callgrind: a gate that no noise can hide behind.
+//! `cargo bench --bench instructions` compares with `benches/instructions.json` and fails where a count has
+//! grown by more than the tolerance; `-- --accept` rewrites the file. Counts depend on the compiler a little,
+//! on the machine hardly.
 //!
 //! Each case runs twice in a process of its own under valgrind, over a short and a long part of
 //! its frames: the difference is free of the start.
@@ -27,7 +27,7 @@ const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.j
 /// Frames of the short run; the long one has them all.
 const SHORT: usize = 40;
 
-/// What is counted, and at which numbers of vertices or parts.
+/// The cases, and their numbers of vertices or parts.
 const CASES: [(&str, &[usize]); 7] = [
     ("separated", &VERTICES),
     ("touching", &VERTICES),

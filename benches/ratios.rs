@@ -1,5 +1,5 @@
-//! Rapier's default dispatcher and ours, asked in turn: whatever else the machine does meanwhile, it
-//! does to both. `cargo bench --bench ratios` prints medians over the turns, as tables.
+//! rapier's default dispatcher and ours, in turn: whatever else the machine does meanwhile, it does to both.
+//! `cargo bench --bench ratios` prints medians over the turns, as tables.
 
 use std::hint::black_box;
 use std::time::Instant;

@@ -107,7 +107,7 @@ fn time(poses: &[RelativePose], mut work: impl FnMut(&RelativePose) -> Observati
     best * 1.0e6 / poses.len() as f64
 }
 
-/// The same loop with the hull's own supports and with those of a plain scan.
+/// The same loop with the hull's own supports and with a plain scan.
 fn by_scan() {
     println!("\n### Supports by the hull and by a plain scan: cold distance\n");
     println!("| vertices | hull µs | scanning µs |");

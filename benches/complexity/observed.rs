@@ -19,7 +19,7 @@ pub enum Direction {
     Nesterov,
 }
 
-/// What was seen of a run.
+/// Observations of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Observation {
     pub distance: f64,

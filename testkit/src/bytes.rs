@@ -34,7 +34,7 @@ const NONSENSE: [Real; 5] = [
 pub struct Bytes<'a> {
     rest: &'a [u8],
     tampered: bool,
-    /// The smallest and the largest size of what was made.
+    /// The smallest and the largest size so far.
     sizes: [Real; 2],
 }
 

@@ -34,7 +34,7 @@ pub const FAMILIES: [(&str, Family); 6] = [
     ("unequal sizes", unequal_sizes),
 ];
 
-/// A body that is made anew wherever it is needed: then its address changes, too.
+/// A body that is built anew for each use, so that its address changes, too.
 struct Body {
     solid: Solid,
     is_prepared: bool,

@@ -11,7 +11,7 @@ use crate::scenes::World;
 /// Steps from one measurement of the true overlaps to the next.
 const OVERLAPS_EVERY: usize = 16;
 
-/// What was observed of one world.
+/// Observations of one world.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Quality {
     /// How far the most tilted body has turned away from its first upright, in degrees.
@@ -20,8 +20,8 @@ pub struct Quality {
     pub asleep_after: Option<usize>,
     /// How far the body has come that moved most since [`Observer::mark`], in metres.
     pub drift: f64,
-    /// The true overlap that 99 of 100 pairs of touching colliders do not exceed, in metres, asked
-    /// anew of our query: manifolds can be some frames old, and miss the deepest point.
+    /// The true overlap that 99 of 100 pairs of touching colliders do not exceed, in metres, by a new query
+    /// of ours: manifolds can be some frames old, and miss the deepest point.
     pub overlap: f64,
     /// The speed that half of the bodies do not exceed at the end, in metres per second.
     pub median_speed: f64,
@@ -77,7 +77,7 @@ impl Observer {
         }
     }
 
-    /// Forgets what was seen of drift, overlaps and patches so far.
+    /// Forgets all observations of drift, overlaps and patches so far.
     pub fn mark(&mut self, world: &World) {
         self.marked = places(world);
         self.overlaps.clear();

@@ -10,7 +10,7 @@ pub struct Report {
     routes: BTreeMap<String, Tally>,
 }
 
-/// What was measured on one route.
+/// The measurements on one route.
 #[derive(Default)]
 struct Tally {
     count: usize,
@@ -19,7 +19,7 @@ struct Tally {
     failures: Vec<String>,
 }
 
-/// One checked answer: measured quantities, and what is wrong with it.
+/// One checked answer: measured quantities, and its faults.
 #[derive(Debug, Default)]
 pub struct Finding {
     measured: Vec<(&'static str, f64)>,
@@ -56,7 +56,7 @@ impl Report {
         }
     }
 
-    /// Adds what was found about the case `id` on `route`.
+    /// Adds the findings about the case `id` on `route`.
     pub fn add(&mut self, route: &str, id: &str, finding: Finding) {
         let tally = self.routes.entry(route.to_owned()).or_default();
         tally.count += 1;

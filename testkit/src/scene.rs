@@ -1,4 +1,4 @@
-//! A pose of a pair with its exact answer, which judges what is answered.
+//! A pose of a pair with its exact answer, by which answers are judged.
 
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::Real;

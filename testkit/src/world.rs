@@ -105,7 +105,7 @@ pub fn start(i: usize, rng: &mut Rng) -> Pose {
     Pose::new(cell * 1.2, rng.direction().as_vec3())
 }
 
-/// A narrow phase that asks us.
+/// A narrow phase with our dispatcher.
 pub fn ours() -> NarrowPhase {
     NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default())
 }
@@ -125,7 +125,7 @@ pub fn state(world: &PhysicsWorld) -> Vec<u32> {
     numbers.map(f32::to_bits).collect()
 }
 
-/// The deepest overlap of any pair, asked for anew.
+/// The deepest overlap of any pair, by a new query.
 pub fn deepest(world: &PhysicsWorld) -> Real {
     use parry3d::query::QueryDispatcher;
     let depths = world.narrow_phase.contact_pairs().map(|pair| {

@@ -8,7 +8,7 @@ use testkit::generate::Rng;
 
 const FRAMES: u64 = 60;
 
-/// Steps a hull that tumbles beside a wall, and tells how many of the answers came from the axis.
+/// Steps a hull that tumbles beside a wall, and counts the answers that came from the axis.
 fn answers_by_axis(shapes: [&dyn Shape; 2], pose: impl Fn(Real) -> Pose) -> u64 {
     let dispatcher = IsaGjkDispatcher::default();
     let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();

@@ -1,4 +1,4 @@
-//! Pairs whose balls are apart: no vertex is looked at, nothing is kept, and nothing is lost when they
+//! Pairs whose bounding spheres are apart: no vertex is read, nothing is kept, and nothing is lost when they
 //! come near again.
 
 use isa_gjk::{IsaGjkDispatcher, Stage};

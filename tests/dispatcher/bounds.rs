@@ -1,5 +1,5 @@
 //! `SeparationBounds` hold the exact signed distance, nearly meet, and their proofs prove what they say.
-//! Whoever checks a proof needs the shapes and arithmetic, and nothing of this crate.
+//! Checking a proof needs only the shapes and arithmetic, and nothing of this crate.
 
 use std::collections::HashMap;
 

@@ -251,7 +251,7 @@ impl<'a> Pair<'a> {
         })
     }
 
-    /// The deepest point of the manifold that comes of what was remembered.
+    /// The deepest point of the manifold that starts from memory.
     fn manifold(&self, dispatcher: &IsaGjkDispatcher, memory: &mut Memory) -> Option<Claim> {
         let manifold = memory.update(
             dispatcher,

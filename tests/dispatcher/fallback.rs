@@ -1,4 +1,4 @@
-//! What is left to the fallback dispatcher, and how it is counted.
+//! Pairs that are left to the fallback dispatcher, and their counts.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -14,7 +14,7 @@ use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, SharedShape};
 use testkit::generate::Rng;
 use testkit::memory::cold_manifold;
 
-/// Supports nothing, and counts what it is asked.
+/// Supports nothing, and counts its calls.
 #[derive(Clone, Default)]
 struct Silent(Arc<AtomicU32>);
 

@@ -22,7 +22,7 @@ const DISTANCE: f64 = 1e-5;
 const REGRET: f64 = 2e-5;
 /// Relative to the smaller diameter: how far a witness may be off its surface.
 const OFF: f64 = 1e-5;
-/// Relative to the larger coordinates: what f32 holds of points.
+/// The f32 rounding of points, relative to the larger coordinates.
 const SINGLE: f64 = 1e-6;
 /// Relative to the larger coordinates: nearer than that, shapes touch.
 const TOUCHING: f64 = 1e-9;
@@ -132,7 +132,7 @@ impl<'a> Judge<'a> {
         Some(deepest.dist.into())
     }
 
-    /// What is there is there in all answers, at the same distance.
+    /// All answers agree on whether there is a contact, and on its distance.
     fn agree(&self, finding: &mut Finding, answers: &[(&str, Option<f64>)]) {
         let reach = self.frame.prediction - self.slack();
         for window in answers.windows(2) {

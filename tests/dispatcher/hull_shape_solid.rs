@@ -151,7 +151,7 @@ fn rays_hit_the_solid_where_they_enter_it() {
         }
     });
     report.conclude();
-    // In the rest parry misses or is off: what is right was checked above.
+    // In the other cases parry misses or is inaccurate: the right answer was checked above.
     assert!(
         agreed * 10 > hits * 8,
         "{agreed} of {hits} as on the plain hull"

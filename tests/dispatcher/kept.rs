@@ -1,4 +1,4 @@
-//! Contacts keep their places on both shapes while these hardly move, and still tell the truth.
+//! Contacts keep their places on both shapes while these hardly move, and stay correct.
 
 use glam::DVec3;
 use isa_gjk::{IsaGjkDispatcher, Stage};
@@ -180,9 +180,9 @@ fn kept_contacts_never_show_an_overlap_that_is_not_there() {
     assert!(kept > 500, "only {kept} updates kept their contacts");
 }
 
-/// Prisms on each other, beside the edge of the other one or not, tilted by up to a thousandth and trembling by
-/// less: all corners are about equally deep, and which of them is the deepest changes from frame to frame.
-/// Distance and depth are those of a cold query, and hardly any update searches for them.
+/// Prisms on each other, beside the edge of the other one or not, tilted by up to a thousandth and trembling
+/// by less: all corners are about equally deep, and which of them is the deepest changes from frame to frame.
+/// Distance and depth equal those of a cold query, and hardly any update needs a search.
 #[test]
 fn flush_faces_are_as_deep_as_a_cold_query_finds_them() {
     let mut rng = Rng::new(6);

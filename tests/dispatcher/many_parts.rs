@@ -1,4 +1,4 @@
-//! What an update costs grows with the parts that are near, not with those that there are.
+//! The cost of an update grows with the number of near parts, not of all parts.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
@@ -19,7 +19,7 @@ fn balls(count: usize, columns: usize) -> SharedShape {
     SharedShape::compound((0..count).map(|i| (place(i), ball.clone())).collect())
 }
 
-/// A ball of a user's own type that counts how often somebody asks what it is.
+/// A ball of a user's own type that counts how often its type is queried.
 #[derive(Clone)]
 struct Counted {
     ball: Ball,

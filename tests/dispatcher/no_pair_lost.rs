@@ -1,12 +1,11 @@
-//! Whoever plugs the dispatcher in must not lose a single contact by it.
+//! With this dispatcher, no contact may be lost.
 //!
-//! rapier throws the result of a narrow-phase query away, so a pair that the dispatcher does not
-//! support falls through the floor in silence, and parry's dispatcher hands itself, not us, to
-//! the routines for compounds, meshes, heightfields and voxels. So every shape meets every
-//! shape: the dispatcher supports exactly what parry supports, finds contacts wherever parry
-//! does, and passes every pair without a convex hull through untouched, to the last bit. Of compounds
-//! only the parts are: we find them ourselves, and their poses may be rounded otherwise. Two capsules
-//! are ours: they have the same depth, and more contacts.
+//! rapier throws the result of a narrow-phase query away, so a pair that the dispatcher does not support
+//! falls through the floor in silence, and parry's dispatcher passes itself, not us, to the routines for
+//! compounds, meshes, heightfields and voxels. So every shape meets every shape: the dispatcher supports
+//! exactly what parry supports, finds contacts wherever parry does, and passes every pair without a convex
+//! hull through untouched, to the last bit. Of compounds only the parts are: we find them ourselves, and
+//! their poses may be rounded otherwise. Two capsules are ours: they have the same depth, and more contacts.
 
 use std::fmt::Debug;
 
@@ -30,7 +29,7 @@ fn nudged(pose: &Pose) -> Pose {
     )
 }
 
-/// Every ordered pair of shapes, but for those that make parry itself panic.
+/// Every ordered pair of shapes, except those that make parry itself panic.
 fn pairs(samples: &[ShapeSample]) -> impl Iterator<Item = [&ShapeSample; 2]> {
     samples
         .iter()

@@ -1,4 +1,4 @@
-//! What once went wrong in parry between convex shapes, asked of our dispatcher with hulls.
+//! Old bugs of parry between convex shapes, with our dispatcher and hulls.
 //!
 //! Each test opens with the story of an issue at <https://github.com/dimforge/parry>.
 
@@ -231,7 +231,7 @@ fn issue_387_parts_far_from_the_origin() {
     assert!((there.point1.y - 1.0).abs() < 1.0e-6, "{there:?}");
 }
 
-/// Issue 79: shapes farther apart than asked about made the search through a mesh panic.
+/// Issue 79: shapes farther apart than the maximum distance made the search through a mesh panic.
 #[test]
 fn issue_79_a_mesh_out_of_reach() {
     let corners = [[1.0, -1.0, 0.0], [-1.0, -1.0, 0.0], [0.0, -1.0, 1.0]];

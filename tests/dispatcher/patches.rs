@@ -315,7 +315,7 @@ fn ids_stay_from_frame_to_frame() {
         let manifold = memory.update(&dispatcher, &pose.to_f32(), [&ground, &body], 0.02);
         for contact in &manifold.expect("ours").points {
             let id = ContactId::of(contact).expect("ours");
-            // What is no corner is the place where they overlap most.
+            // If it is no corner, it is the place where they overlap most.
             assert!(
                 now.contains(&id) || id == patch.deepest.id,
                 "frame {frame}: {id:?}"

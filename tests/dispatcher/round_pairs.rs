@@ -67,7 +67,7 @@ fn rounds(size: Real) -> Vec<Round> {
     ]
 }
 
-/// What is checked in one pose.
+/// The checks in one pose.
 struct Check<'a> {
     hull: &'a Hull,
     round: &'a Round,

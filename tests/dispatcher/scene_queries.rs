@@ -1,8 +1,8 @@
 //! Scene queries about hulls, alone and as parts of other shapes.
 //!
-//! Sensors, shape casts and character controllers ask the dispatcher about pairs without memory.
-//! Hulls are measured against the exact answers; shapes with parts must be answered as their
-//! nearest part is, whichever way round they are asked about.
+//! Sensors, shape casts and character controllers ask the dispatcher about pairs without memory. Hulls are
+//! measured against the exact answers; shapes with parts must be answered as their nearest part is, in either
+//! order of the shapes.
 
 use glam::{DQuat, DVec3};
 use isa_gjk::IsaGjkDispatcher;
@@ -190,7 +190,7 @@ impl Flight<'_> {
         signed_distance(a, b, &self.pose_at(time))
     }
 
-    /// The least distance up to the last time asked about; it is a convex function of time.
+    /// The least distance up to the maximum time; it is a convex function of time.
     fn least_distance(&self) -> f64 {
         let (mut low, mut high) = (0.0, 5.0);
         for _ in 0..60 {
@@ -431,8 +431,8 @@ fn impossible_casts_meet_nothing() {
     }
 }
 
-/// A spinning hull falls on another: at the time of impact they touch, and before they do not, up
-/// to the tolerance of parry's search, in whose every step we are asked for the distance.
+/// A spinning hull falls on another: at the time of impact they touch, and before they do not, up to the
+/// tolerance of parry's search, which calls our distance query in every step.
 #[test]
 fn spinning_casts_end_in_touch() {
     let mut rng = Rng::new(44);

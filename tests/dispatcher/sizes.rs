@@ -42,7 +42,7 @@ fn shape(kind: Kind, points: &[DVec3], scale: f64) -> SharedShape {
     }
 }
 
-/// All that is asked about a pair, in units of its size: distances, and how far apart the closest points are.
+/// All answers about a pair, in units of its size: distances, and how far apart the closest points are.
 fn answers(points: [&[DVec3]; 2], kind: Kind, place: DVec3, exponent: i32) -> [f64; 4] {
     let scale = 2.0_f64.powi(exponent);
     let shapes = [

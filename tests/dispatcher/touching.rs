@@ -18,9 +18,9 @@ use testkit::report::{Finding, Report};
 
 /// Relative to the sizes of both shapes together.
 const ACCURACY: f64 = 1e-6;
-/// Relative to the larger coordinates: what f32 holds of points.
+/// The f32 rounding of points, relative to the larger coordinates.
 const SINGLE: f64 = 4e-7;
-/// And of those that are clipped in f32, over sides that are nearly parallel.
+/// The same for points that are clipped in f32 over nearly parallel sides.
 const CLIPPED: f64 = 4e-6;
 /// The step from touching to apart or overlapping: a share of the way to the middle.
 const STEP: f64 = 1.0 / (1 << 18) as f64;
@@ -473,7 +473,7 @@ fn all_queries_agree_at_above_and_below_touching() {
             ] {
                 let mut finding = scene.check(step <= 0.0, range);
                 let is_inwards = along.dot(middle - touching) < -1e-3 * along.length() * way;
-                // What is a millionth as large may be passed sideways.
+                // A shape a millionth as large may be passed sideways.
                 let is_alike = a.size().min(b.size()) > 1e-5 * scene.size();
                 if step == 0.0 && is_inwards && is_alike {
                     scene.check_casts(&mut finding, inwards);

@@ -101,7 +101,7 @@ fn a_thread_that_ends_may_ask() {
             shapes: [(); 2].map(|()| rng.hull(30, 1.0).shape),
             answers: RefCell::default(),
         };
-        // What is used first goes last, on most systems; ours is to be gone before.
+        // On most systems, the first thread-local used is dropped last; ours must be dropped before.
         LAST.with(|_| ());
         let expected = asks.ask();
         LAST.with(|last| last.borrow_mut().0 = Some((asks, expected)));

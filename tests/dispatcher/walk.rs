@@ -1,4 +1,4 @@
-//! A contact that rolls over many small facets is followed by walking, not searched for anew.
+//! A contact that rolls over many small facets is followed by walking, without a new search.
 //!
 //! Two edges that were in contact may span no facet at all at the next poses. A walk that took them for
 //! one came back to them again and again until its steps were used up, and then GJK began from there.
@@ -24,7 +24,7 @@ fn searches(rng: &mut Rng) -> [u64; 2] {
     let (axis, start) = (rng.direction().as_vec3(), rng.direction().as_vec3());
     let (spin, tilt) = (rng.direction().as_vec3(), rng.direction().as_vec3());
     let pose = |frame: usize| {
-        // As far as contacts move before rapier asks about them again.
+        // As far as contacts move before rapier updates them again.
         let angle = 0.05 * frame as Real;
         let around = Rotation::from_axis_angle(axis, angle) * start;
         let turn = Rotation::from_axis_angle(spin, 1.3 * angle) * Rotation::from_scaled_axis(tilt);

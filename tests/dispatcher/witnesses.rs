@@ -14,7 +14,7 @@ use testkit::report::{Finding, Report};
 
 /// Relative to the smaller shape's diameter: what a depth is certified to.
 const OFF: f64 = 2e-6;
-/// Relative to the larger coordinates: what f32 holds of points.
+/// The f32 rounding of points, relative to the larger coordinates.
 const SINGLE: f64 = 4e-7;
 
 fn contact(shapes: [&Hull; 2], pose: &ExactPose, prediction: f64) -> Option<Contact> {

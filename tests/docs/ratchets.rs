@@ -3,7 +3,7 @@
 
 use crate::{files, lines};
 
-/// Names of our own that have given way to those of the literature. They are not to come back.
+/// Names of our own that were replaced by those of the literature. They must not come back.
 const PRIVATE_WORDS: [&str; 53] = [
     "dice",
     "Besides",

@@ -233,7 +233,7 @@ fn turned(points: &[Vec3], by: DQuat) -> Vec<Vec3> {
     points.iter().map(turn).collect()
 }
 
-/// The published hulls turned, those that build; and how many do not.
+/// The published hulls after a rotation, as far as they can be built, and how many cannot.
 fn rounded_builds() -> (Vec<(String, Hull)>, Vec<String>) {
     let mut rng = Rng::new(32);
     let (mut builds, mut refused) = (Vec::new(), Vec::new());

@@ -1,4 +1,4 @@
-//! What cannot be a hull is refused by name; what is merely extreme in size or shape is built.
+//! Input that is no hull is refused with its reason; hulls of extreme size or shape are built.
 
 use std::collections::HashSet;
 use std::f64::consts::TAU;
@@ -458,7 +458,8 @@ fn check_encloses(hull: &Hull, cloud: &[Vec3]) {
     assert!(hull.points().iter().all(|p| cloud.contains(&bits(p))));
 }
 
-/// Grids, doubled points, points on edges and in sides, clouds in a line but for a few: only corners stay.
+/// Grids, doubled points, points on edges and in sides, clouds with all but a few points in a line: only
+/// corners remain.
 #[test]
 fn only_corners_of_a_cloud_stay() {
     let mut rng = Rng::new(21);

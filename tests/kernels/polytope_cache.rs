@@ -165,8 +165,8 @@ fn an_empty_shell_proves_nothing() {
     }
 }
 
-/// Twice as many pairs as there are places: those that came first keep theirs while they are of use,
-/// and lose them when they are not.
+/// Twice as many pairs as there are slots: the first pairs keep theirs while they are useful, and lose them
+/// when they are not.
 #[test]
 fn pairs_that_share_a_place_do_not_drive_each_other_out() {
     const PAIRS: u64 = 4_096;
@@ -198,7 +198,7 @@ fn pairs_that_share_a_place_do_not_drive_each_other_out() {
         first.iter().all(|key| crowd.contains(key)),
         "driven out at once"
     );
-    // Pairs that are no longer asked about give way.
+    // Pairs that are no longer queried give way.
     for _ in 0..40 {
         frame(PAIRS / 2..PAIRS);
     }

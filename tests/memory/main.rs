@@ -1,5 +1,5 @@
-//! What is prepared of plain hulls takes no memory for long once they are gone, and what is in use is
-//! not prepared again and again.
+//! Prepared hulls of dropped plain hulls do not take memory for long, and what is in use is not prepared
+//! again and again.
 //!
 //! All tests count the same memory, so they take turns.
 
@@ -63,8 +63,8 @@ fn touch(dispatcher: &IsaGjkDispatcher, shapes: [&SharedShape; 2]) {
     assert!(answer.is_ok_and(|answer| answer.intersecting));
 }
 
-/// Hulls that come, are asked about and go, among allocations of other sizes; the most memory that
-/// was in use meanwhile beyond what was in use before.
+/// Hulls that are made, queried and dropped, among allocations of other sizes; the most memory that was in
+/// use meanwhile beyond what was in use before.
 fn churn(dispatcher: &IsaGjkDispatcher, rng: &mut Rng, hulls: usize, live: usize) -> usize {
     let stays = round(rng, 100, 0.5);
     let mut ring = VecDeque::new();
@@ -163,7 +163,7 @@ fn trimming_reaches_other_threads_and_changes_no_answer() {
     other.join().expect("no panic");
 }
 
-/// More than may stay unused, each asked about in turn.
+/// More hulls than may stay unused, each queried in turn.
 #[test]
 fn many_hulls_in_use_are_prepared_once() {
     let _turn = take_turn();
@@ -180,7 +180,7 @@ fn many_hulls_in_use_are_prepared_once() {
         CALLS.load(Relaxed) - calls
     };
     let first = ask_all();
-    // What had to go before it was known that all are in use is prepared once more.
+    // Hulls that were dropped before it was known that all are in use are prepared once more.
     let second = ask_all();
     assert!(second < first, "{second} after {first} allocations");
     let later = [(); 5].map(|()| ask_all());

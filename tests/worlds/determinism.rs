@@ -44,7 +44,7 @@ fn equal_worlds_have_equal_histories() {
     }
 }
 
-/// Colliders that share a shape, and those that have equal shapes of their own, as in a loaded world.
+/// Colliders that share a shape, and colliders with equal shapes of their own, as in a loaded world.
 #[test]
 fn shared_shapes_do_not_show() {
     for ground in Ground::ALL {

@@ -55,7 +55,7 @@ fn hulls_are_prepared_once() {
     assert_alike(&hull, &prepared);
     assert!(same(&prepared, &shapes.prepare(&hull.clone())));
     assert!(!same(&prepared, &shapes.prepare(&other)));
-    // What is prepared stays.
+    // Prepared shapes stay.
     assert!(same(&prepared, &shapes.prepare(&prepared)));
 }
 

@@ -1,4 +1,4 @@
-//! A saved world goes on as if it had never been saved.
+//! A saved world continues as if it had never been saved.
 //!
 //! Games save, roll back and replay. Rapier saves manifolds and parry's workspaces, but not the
 //! dispatcher; whatever else influenced a step would show here as a different bit.

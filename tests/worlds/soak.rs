@@ -15,7 +15,7 @@ const CHECK_EVERY: usize = 250;
 /// Bodies are put into each other, and need a moment to part.
 const DEEPEST: Real = 0.9;
 
-/// What was done to the world.
+/// What was changed in the world.
 #[derive(Debug, Default)]
 struct Deeds {
     added: usize,
@@ -155,7 +155,7 @@ fn a_world_that_is_meddled_with_lives_on() {
             "{} steps on {ground:?} in {seconds} s: {deeds:?}, {escaped} escaped",
             steps / 4
         );
-        // Whoever is put, or grows, into the ground may leave it on the other side.
+        // A body that is placed into the ground, or grows into it, may leave it on the other side.
         let moved = deeds.added + deeds.teleported + deeds.reshaped;
         assert!(escaped <= 2 + moved / 10, "{escaped} of {deeds:?}");
     }

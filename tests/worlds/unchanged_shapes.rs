@@ -33,7 +33,7 @@ fn worlds_go_the_same_way() {
     }
 }
 
-/// A pair whose first shape changes in place, and with it what is remembered of it.
+/// A pair whose first shape changes in place, with its memory.
 struct Changing {
     dispatcher: IsaGjkDispatcher,
     shapes: [SharedShape; 2],
@@ -106,7 +106,7 @@ fn a_panic_ends_the_promise() {
     pair.check();
 }
 
-/// A promise within another ends both: what is asked later is proved again.
+/// A promise within another ends both: later queries verify again.
 #[test]
 fn promises_do_not_outlive_each_other() {
     let mut pair = Changing::new(&mut Rng::new(93));

@@ -78,7 +78,7 @@ fn manifolds(criterion: &mut Criterion) {
     }
 }
 
-/// Hulls with what is no hull, in the same motion.
+/// Hulls with other shapes, in the same motion.
 fn others(criterion: &mut Criterion) {
     let up = -Vector::new(0.36, 0.48, 0.8);
     let others = [

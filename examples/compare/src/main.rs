@@ -1,5 +1,5 @@
-//! Steps two equal rapier worlds in turn, one with rapier's own narrow phase and one with
-//! `isa-gjk`, and tells what each cost: `cargo run --release -p compare -- --help`.
+//! Steps two equal rapier worlds in turn, one with rapier's own narrow phase and one with `isa-gjk`, and
+//! reports the cost of each: `cargo run --release -p compare -- --help`.
 
 mod chart;
 mod files;
@@ -107,7 +107,7 @@ fn until_asleep(options: &Options) -> Result<(), Box<dyn Error>> {
     print(&rest)
 }
 
-/// The files that are asked for.
+/// The requested files.
 struct Outputs {
     json: Option<BufWriter<File>>,
     csv: Option<BufWriter<File>>,
@@ -126,7 +126,7 @@ impl Outputs {
 
 fn print(table: &impl Display) -> Result<(), Box<dyn Error>> {
     match write!(io::stdout().lock(), "{table}") {
-        // Whoever reads us has seen enough, as `head` does.
+        // The reader of our output has closed it, as `head` does.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         result => Ok(result?),
     }

@@ -70,7 +70,7 @@ pub struct Side {
     pub mean_height: f64,
     /// Dynamic bodies asleep at the end.
     pub sleeping: usize,
-    /// What was seen of its contacts; drift and patches in the second half of the frames.
+    /// Observations of its contacts; drift and patches are from the second half of the frames.
     pub quality: Quality,
     /// Of all poses at the end.
     pub pose_hash: u64,

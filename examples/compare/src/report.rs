@@ -63,7 +63,7 @@ struct Queries {
 }
 
 impl Report {
-    /// Summarises `runs`, of which there is at least one.
+    /// Summarises `runs`. There must be at least one.
     pub fn new(scene: Scene, params: &SceneParams, length: RunLength, runs: &[Run]) -> Self {
         let first = &runs[0];
         let hashes = |run: &Run| (run.default.pose_hash, run.ours.pose_hash);
@@ -91,7 +91,7 @@ impl Report {
         }
     }
 
-    /// What was compared, in a few words.
+    /// A short description of what was compared.
     pub fn title(&self) -> String {
         format!("{}: {} bodies, {}", self.scene, self.bodies, self.hulls)
     }

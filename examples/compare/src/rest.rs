@@ -107,7 +107,7 @@ impl Rest {
         })
     }
 
-    /// What was compared, in a few words.
+    /// A short description of what was compared.
     pub fn title(&self) -> String {
         let size = self.size.map(|size| format!(", up to {} m", size));
         let size = size.unwrap_or_default();

@@ -18,7 +18,7 @@ const VERTICES: [u32; 8] = [8, 16, 32, 64, 128, 256, 512, 1024];
 /// A scene measured at many vertex counts.
 #[derive(Serialize)]
 pub struct Sweep {
-    /// What is in the world.
+    /// The scene in the world.
     pub scene: &'static str,
     /// How many of them.
     pub bodies: u32,

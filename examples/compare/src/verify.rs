@@ -62,7 +62,7 @@ impl fmt::Display for Verified {
 
 /// Draws manifolds of a running world and checks them.
 pub struct Verifier {
-    /// What was found so far.
+    /// The findings so far.
     pub found: Verified,
     per_visit: u32,
     random: Rand32,
@@ -147,7 +147,7 @@ impl Question<'_> {
         (dispatcher.stats().queries() > 0).then_some(manifold)
     }
 
-    /// How deep a manifold says the shapes are; those without points are farther than asked.
+    /// The depth by a manifold. Without points, the shapes are farther apart than the prediction.
     fn distance(&self, manifold: &ContactManifold) -> f64 {
         let distances = manifold.points.iter().map(|point| point.dist);
         distances.fold(f64::from(self.prediction), |least, next| {
@@ -232,7 +232,7 @@ impl Verified {
     }
 }
 
-/// What is no number is as wrong as can be.
+/// NaN is infinitely wrong.
 fn raise(worst: &mut f64, error: f64) {
     *worst = worst.max(if error.is_nan() { f64::INFINITY } else { error });
 }

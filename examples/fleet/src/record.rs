@@ -1,4 +1,4 @@
-//! What is written of each world, one line of JSON.
+//! The record of each world: one line of JSON.
 
 use std::fs;
 use std::path::PathBuf;

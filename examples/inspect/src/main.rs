@@ -1,5 +1,5 @@
-//! Draws a pair of hulls at one frame of a trajectory, with what was remembered of it, which stage
-//! answered, and what came out: `cargo run --release -p inspect -- --help`.
+//! Draws a pair of hulls at one frame of a trajectory, with its memory, which stage answered, and what came
+//! out: `cargo run --release -p inspect -- --help`.
 
 mod picture;
 mod svg;

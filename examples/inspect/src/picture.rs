@@ -1,4 +1,4 @@
-//! What is to be seen of a pair of hulls at one frame.
+//! The picture of a pair of hulls at one frame.
 
 use glam::DVec3;
 use isa_gjk::internals::manifold::ContactPoint;
@@ -114,7 +114,7 @@ impl Snapshot<'_> {
         }
     }
 
-    /// The hint, at the present poses: whether it still holds is for the query to prove.
+    /// The memory at the present poses. The query must prove whether it still holds.
     fn draw_memory(&self, canvas: &mut Canvas) {
         let style = Style {
             opacity: 0.45,

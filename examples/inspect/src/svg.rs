@@ -48,7 +48,7 @@ impl Style {
     }
 }
 
-/// A view, and what was drawn and written so far.
+/// A view, with all drawings and text so far.
 pub struct Canvas {
     elements: String,
     right: DVec3,
@@ -127,7 +127,7 @@ impl Canvas {
         ));
     }
 
-    /// Writes lines of text at the top, over what was drawn too far to the right.
+    /// Writes lines of text at the top, over any drawing that reaches too far to the right.
     pub fn note(&mut self, lines: &[String]) {
         self.add(format_args!(
             "<rect x=\"{}\" width=\"100%\" height=\"100%\" fill=\"white\"/>",

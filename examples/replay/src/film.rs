@@ -66,7 +66,7 @@ impl Reel {
     }
 }
 
-/// The picture, which takes `seconds` and starts anew.
+/// The picture, which takes `seconds` and then starts over.
 pub fn picture(reels: &[Reel], seconds: f64) -> String {
     let (width, height) = (WIDTH * reels.len() as Real, HEIGHT + TITLE);
     let mut svg = format!(
@@ -142,7 +142,7 @@ impl View {
         [0.5 * WIDTH + seen.x, 0.86 * HEIGHT - seen.y].map(|x| x.round() as i32)
     }
 
-    /// The outline of a body, and over it those of its faces that have many corners.
+    /// The outline of a body, and over it the outlines of faces with many corners.
     fn draw(&self, collider: &Collider, (dark, light): (&str, &str)) -> String {
         let pose = collider.position();
         let corners = mesh::triangles(collider.shape()).into_iter();

@@ -101,8 +101,8 @@ impl Options {
         }
     }
 
-    /// Steps the world, and hands it over at first and after each `every` steps. Returns the seconds
-    /// in between.
+    /// Steps the world, and calls back at first and after every `every` steps. Returns the seconds in
+    /// between.
     fn run(&self, world: &mut World, mut record: impl FnMut(&World)) -> f64 {
         let step = f64::from(world.physics.integration_parameters.dt);
         let seconds_per_frame = step * f64::from(self.every);

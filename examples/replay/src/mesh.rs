@@ -2,7 +2,7 @@
 
 use rapier3d::prelude::{Pose, Shape, TypedShape, Vector};
 
-/// Sides of what is round.
+/// The number of sides of round shapes.
 const ROUND: u32 = 24;
 
 /// The surface of a shape, three corners for each triangle, in the shape's frame; empty for shapes

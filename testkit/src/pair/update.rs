@@ -1,4 +1,4 @@
-//! A manifold update as rapier asks for it.
+//! A manifold update, called as rapier does.
 
 use std::hint::black_box;
 

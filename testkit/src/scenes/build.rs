@@ -16,7 +16,7 @@ const COIN_HALF_HEIGHT: Real = 0.03;
 /// One bouncing hull for so many that sleep.
 const SLEEPERS_PER_BOUNCER: usize = 100;
 
-/// Puts the bodies of `scene` and what holds them into an empty world, with colliders that are
+/// Puts the bodies of `scene` and their container into an empty world, with colliders that are
 /// [`isa_gjk::HullShape`]s where the hulls are plain if `hull_shape` is set.
 pub fn fill(
     world: &mut World,

@@ -1,4 +1,4 @@
-//! What holds the bodies of a scene together.
+//! Containers for the bodies of a scene.
 
 use std::f32::consts::PI;
 

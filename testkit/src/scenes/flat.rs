@@ -8,7 +8,7 @@ use rapier3d::prelude::*;
 const LEVEL: Real = 5e-3;
 /// A flat side is a base if it goes on around the centre of mass by this share of the radius.
 const MARGIN: Real = 0.25;
-/// In how many directions that is looked at.
+/// The number of directions in which this is checked.
 const DIRECTIONS: u32 = 16;
 
 /// The hull turned to where it is flat below and above, its centre of mass on the y axis and half

@@ -31,7 +31,7 @@ pub enum Scene {
     Coins,
     /// A brick wall.
     Wall,
-    /// Rows of up to 64 dominoes, of which the first of each falls.
+    /// Rows of up to 64 dominoes, the first of which falls.
     Dominoes,
     /// Prisms turning slowly about their axes on a hull.
     Spin,
@@ -232,7 +232,7 @@ pub enum Hulls {
     None,
     /// Prisms only.
     Prisms,
-    /// Prisms, or of the real ones those that are flat below and above.
+    /// Prisms, or those of the real hulls that are flat below and above.
     Upright,
     /// Boxes of its own.
     Boxes,

@@ -81,7 +81,7 @@ impl Filler<'_> {
         self.shape(0).compute_local_aabb().half_extents()
     }
 
-    /// Rows, of which the first of each is pushed.
+    /// Rows. The first domino of each is pushed.
     pub(super) fn dominoes(&mut self) {
         let domino = self.half_extents();
         let spacing = domino.y;
