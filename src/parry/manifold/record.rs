@@ -1,16 +1,16 @@
 //! A pair's memory, kept in its contact manifold.
 //!
-//! Manifolds are saved, cloned and pooled with the world, reach the parts of composite shapes,
-//! and cost rapier nothing; a workspace would make it rebuild its solver graph every step. So
-//! the memory is in fields of the manifold that are free:
+//! Manifolds are saved, cloned and pooled with the world, exist for the parts of composite shapes, and cost
+//! rapier nothing; a workspace would make it rebuild its solver graph in every step. So the memory is in
+//! unused fields of the manifold:
 //!
-//! - without points, `local_n1` is the separating axis (parry's own habit) in an [`AxisFrame`], and
-//!   `local_n2`, which nobody reads then, holds the two extreme vertices as whole numbers; of a pair
-//!   whose bounding spheres are apart it is zero;
-//! - with points, `local_n1` is the contact normal, and the feature ids of the first point name
-//!   the features in contact.
+//! - without points, `local_n1` is the separating axis (as in parry) in an [`AxisFrame`], or zero if the
+//!   bounding spheres are apart; `local_n2`, which is unused then, contains the two extreme vertices as whole
+//!   numbers;
+//! - with points, `local_n1` is the contact normal, and the feature ids of the first point are the features
+//!   in contact.
 //!
-//! What another dispatcher or a different pair left there is as good as any other hint.
+//! Anything that another dispatcher or another pair left there is only a hint.
 
 use glam::{DVec3, Vec3};
 use parry3d::math::Rotation;
@@ -25,18 +25,18 @@ use crate::query::{ContactId, Feature, LastContacts, PairMemory};
 use crate::support::{Cso, Support, VertexId};
 use crate::tolerance::NEARLY_UNIT;
 
-/// In which shape's frame a pair keeps its separating axis.
+/// The shape in whose frame a pair keeps its separating axis.
 #[derive(Clone, Copy)]
 pub(super) enum AxisFrame<'a> {
     /// The kernels' first shape.
     First,
-    /// Their second shape, which is there in the frame of the first.
+    /// Their second shape, with its pose in the frame of the first.
     Second(&'a RelativePose),
 }
 
 impl<'a> AxisFrame<'a> {
-    /// That of the larger shape. Where sizes differ, mostly the small shape tumbles, over a floor or along
-    /// a wall, and seen from these the axis stays where it is.
+    /// The frame of the larger shape. If sizes differ, mostly the small shape tumbles over a floor or along a
+    /// wall, and in the frame of these the axis does not move.
     #[inline]
     pub fn of<A: Support, B: Support>(cso: &Cso<'a, A, B>) -> Self {
         if cso.shape_2.radius() > cso.shape_1.radius() {
@@ -46,7 +46,7 @@ impl<'a> AxisFrame<'a> {
         }
     }
 
-    /// From the frame of the kernels' first shape.
+    /// Converts from the frame of the kernels' first shape.
     #[inline]
     fn to_stored(self, axis: DVec3) -> DVec3 {
         match self {
@@ -55,7 +55,7 @@ impl<'a> AxisFrame<'a> {
         }
     }
 
-    /// To the frame of the kernels' first shape.
+    /// Converts to the frame of the kernels' first shape.
     #[inline]
     fn to_kernel(self, axis: DVec3) -> DVec3 {
         match self {
@@ -65,7 +65,7 @@ impl<'a> AxisFrame<'a> {
     }
 }
 
-/// A manifold as the kernels see it: in their order of the shapes, whose rounded borders are taken off.
+/// A manifold as the kernels see it: in their order of the shapes, without rounded borders.
 pub(super) struct KernelManifold<'a, M, C> {
     pub manifold: &'a mut ContactManifold<M, C>,
     pub order: PairOrder,
@@ -118,7 +118,7 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
         }
     }
 
-    /// Leaves nothing to a pair that is known to be apart without it: where to begin next is not worth
+    /// Clears the memory of a pair whose bounding spheres are apart: a start for the next query is not worth
     /// a root and a division.
     #[inline(always)]
     pub fn forget(&mut self) {
@@ -126,7 +126,7 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
         self.manifold.local_n1 = Vec3::ZERO;
     }
 
-    /// Leaves an axis and extreme vertices in a manifold without points.
+    /// Stores an axis and extreme vertices in a manifold without points.
     #[inline(always)]
     pub fn set_axis(&mut self, axis: DVec3, vertices: [VertexId; 2]) {
         debug_assert!(is_unit(axis), "no unit vector: {axis}");
@@ -142,14 +142,14 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
         self.manifold.local_n2 = Vec3::new(x, y, 0.0);
     }
 
-    /// The contact normal in f32, as both shapes see it, outwards.
+    /// Stores the contact normal in f32, outwards from both shapes in their own frames.
     #[inline(always)]
     pub fn set_normals(&mut self, normals: [Vec3; 2]) {
         [self.manifold.local_n1, self.manifold.local_n2] = self.order.to_caller(normals);
     }
 
-    /// Runs a routine of parry's. These keep a separating axis in the frame of the manifold's first shape,
-    /// as one from it to the second, which is turned by `rotation` in that frame.
+    /// Runs a routine of parry. These keep the separating axis in the frame of the manifold's first shape,
+    /// pointing to the second, whose rotation in that frame is `rotation`.
     pub fn with_parry_axis(
         &mut self,
         rotation: Rotation,
@@ -178,12 +178,12 @@ fn deepest<C>(contacts: &[TrackedContact<C>]) -> Option<&TrackedContact<C>> {
     Some(deepest)
 }
 
-/// A vector that is a unit vector up to rounding, or nothing. (Separations along it are then right
-/// to the same relative rounding.)
+/// The vector if it is a unit vector up to rounding. (Separations along it are then right up to the same
+/// relative rounding.)
 #[inline]
 fn unit(v: Vec3) -> Option<DVec3> {
     let v = v.as_dvec3();
-    // Also false for NaN.
+    // This is also false for NaN.
     ((v.length_squared() - 1.0).abs() < NEARLY_UNIT).then_some(v)
 }
 
@@ -199,9 +199,8 @@ pub(super) fn unpack(id: PackedFeatureId) -> Option<Feature> {
 }
 
 impl ContactId {
-    /// That of a contact in a manifold of this crate's, which may be one of rapier's
-    /// (`narrow_phase.contact_pair(a, b)`). `None` if another dispatcher made it, and its features have no
-    /// names.
+    /// The id of a contact in a manifold that this crate wrote, for instance one of rapier's
+    /// (`narrow_phase.contact_pair(a, b)`). `None` if another dispatcher wrote it without feature ids.
     pub fn of<C>(contact: &TrackedContact<C>) -> Option<Self> {
         let features = [unpack(contact.fid1)?, unpack(contact.fid2)?];
         Some(Self::new(features))
