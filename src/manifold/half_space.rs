@@ -5,6 +5,7 @@ use glam::Vec2;
 use super::clip::Clipper;
 use super::contact_frame::ContactFrame;
 use super::contacts::{Contacts, MAX_POINTS};
+use super::outline::PatchCorner;
 use super::reduce::Selection;
 use super::scratch::ClipScratch;
 use crate::pose::{RelativePose, is_unit};
@@ -73,6 +74,50 @@ pub fn half_space_contacts(
         &mut selection,
     );
     contacts(&selection)
+}
+
+/// The corners of the face that lies on a half-space, as far as they are at most `max_distance` from it,
+/// counter-clockwise seen from there. There are none if the face is edge-on.
+pub fn half_space_polygon(
+    shape: &impl Polytope,
+    near: &Proximity,
+    max_distance: f64,
+) -> Vec<PatchCorner> {
+    let normal = near.normal;
+    let face = shape.face_at_vertex(near.features[0].vertex(shape), normal);
+    if shape.face_normal(face).dot(normal) <= EDGE_ON {
+        return Vec::new();
+    }
+    let polygon = shape.cluster(face).map_or(face, |(outline, _)| outline);
+    let count = shape.face_len(polygon);
+    let corner = |i: usize| {
+        let vertex = shape.face_vertex(polygon, i % count);
+        let on_1 = shape.vertex(vertex);
+        PatchCorner {
+            on_1,
+            distance: near.signed_distance - (on_1 - near.on_1).dot(normal),
+            features: [Feature::Vertex(vertex), near.features[1]],
+        }
+    };
+    let is_near = |corner: &PatchCorner| corner.distance <= max_distance;
+    let mut kept = Vec::new();
+    for i in 0..count {
+        let (from, to) = (corner(i), corner(i + 1));
+        if is_near(&from) {
+            kept.push(from);
+        }
+        if is_near(&from) != is_near(&to) {
+            let edge = shape.face_edge(polygon, i);
+            let feature = edge.map_or(Feature::Face(face), Feature::Edge);
+            let share = (max_distance - from.distance) / (to.distance - from.distance);
+            kept.push(PatchCorner {
+                on_1: from.on_1.lerp(to.on_1, share),
+                distance: max_distance,
+                features: [feature, near.features[1]],
+            });
+        }
+    }
+    kept
 }
 
 /// Adds corners of a face that span much of the plane, first among those nearer than `max_distance`.

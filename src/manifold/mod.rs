@@ -34,7 +34,7 @@ use reduce::{Candidates, Selection};
 
 pub use contacts::{ContactPoint, Contacts, MAX_POINTS};
 pub use corrected::contacts_along;
-pub use half_space::half_space_contacts;
+pub use half_space::{half_space_contacts, half_space_polygon};
 pub use outline::{PatchCorner, contact_polygon};
 pub use scratch::ClipScratch;
 

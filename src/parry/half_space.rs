@@ -44,7 +44,7 @@ fn is_sphere_apart(pair: &Pair<'_, HalfSpace>, pose: &RelativePose, beyond: f64)
 
 /// The vertex of a hull that is deepest in a half-space.
 #[inline(always)]
-fn deepest(
+pub(crate) fn deepest(
     pair: &Pair<'_, HalfSpace>,
     pose: &RelativePose,
     memory: &PairMemory,

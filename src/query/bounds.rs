@@ -41,4 +41,8 @@ pub enum Certificate {
     /// nearer to it than `-(upper + border)`. So the ball of this radius is in the difference, and shape 2
     /// must move at least that far, in any direction, to leave shape 1.
     Surface(Vec<[[DVec3; 2]; 3]>),
+    /// One of the shapes is a half-space, and this is the other one's point, without its border, that is
+    /// deepest in it or nearest above it. Its height over the plane is at most `upper + border`. Whichever way
+    /// the point leaves, or comes, the way is no shorter than along the normal.
+    Height(DVec3),
 }

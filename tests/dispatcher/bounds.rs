@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use glam::{DQuat, DVec3};
 use isa_gjk::query::{Certificate, QueryError, SeparationBounds};
 use parry3d::math::{Pose, Real, Vector};
-use parry3d::shape::{ConvexPolyhedron, Cuboid, SharedShape};
+use parry3d::shape::{ConvexPolyhedron, Cuboid, HalfSpace, SharedShape};
 use testkit::generate::{Rng, prepared};
 use testkit::oracle::{Solid, signed_distance};
 use testkit::pose::ExactPose;
@@ -302,6 +302,55 @@ fn cube() -> SharedShape {
     hulls::cuboid(Vector::splat(0.5)).expect("a box")
 }
 
+/// Over a half-space the lowest point is the whole proof.
+#[test]
+fn half_spaces_have_bounds() {
+    let mut rng = Rng::new(38);
+    let mut depths = 0;
+    for shape in rounded::all(&mut rng, 1.0).drain(..2) {
+        for _ in 0..200 {
+            let up = rng.direction().as_vec3();
+            let ground = SharedShape::new(HalfSpace::new(up));
+            let up = up.as_dvec3().normalize();
+            let pose = rng.pose(0.8);
+            let height = |p: &DVec3| up.dot(pose.apply(*p)) - shape.border;
+            let heights = shape.core.points.iter().map(height);
+            let exact = heights.fold(f64::INFINITY, f64::min);
+            for is_first in [true, false] {
+                let what = format!("{} at {pose:?}, first: {is_first}", shape.name);
+                let (a, b, pos12) = if is_first {
+                    (&ground, &shape.shape, pose)
+                } else {
+                    (&shape.shape, &ground, pose.inverse())
+                };
+                let found = SeparationBounds::between(&**a, &**b, &pos12.to_f32());
+                let bounds = found.expect(&what);
+                // The inverse is rounded to f32.
+                let slack = if is_first { ORACLE } else { 1e-6 };
+                assert!(
+                    bounds.lower <= exact + slack,
+                    "{what}: {bounds:?} for {exact}"
+                );
+                assert!(
+                    bounds.upper >= exact - slack,
+                    "{what}: {bounds:?} for {exact}"
+                );
+                assert!(bounds.upper - bounds.lower < 1e-13, "{what}: {bounds:?}");
+                let [below, above] = bounds.planes;
+                assert!(bounds.lower <= above - below, "{what}: {bounds:?}");
+                let Certificate::Height(point) = bounds.certificate else {
+                    panic!("{what}: {bounds:?}");
+                };
+                let in_ground = if is_first { point } else { pose.apply(point) };
+                let proved = up.dot(in_ground) - bounds.border;
+                assert!(proved <= bounds.upper + slack, "{what}: {point}");
+                depths += usize::from(bounds.upper < 0.0);
+            }
+        }
+    }
+    assert!(depths > 100);
+}
+
 #[test]
 fn what_has_no_bounds_says_why() {
     let hull = cube();
@@ -321,12 +370,6 @@ fn what_has_no_bounds_says_why() {
         (
             &hull,
             &SharedShape::ball(-1.0),
-            near,
-            QueryError::OtherShape,
-        ),
-        (
-            &hull,
-            &SharedShape::halfspace(Vector::Y),
             near,
             QueryError::OtherShape,
         ),

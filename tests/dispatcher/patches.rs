@@ -335,6 +335,71 @@ fn ids_stay_from_frame_to_frame() {
     );
 }
 
+/// A tilted prism on a half-space: the part of its end that is near enough.
+#[test]
+fn half_spaces_have_patches() {
+    let mut rng = Rng::new(39);
+    let ground = SharedShape::halfspace(Vector::Y);
+    let prediction = 0.02;
+    let mut cut = 0;
+    for round in 0..300 {
+        let prism = prism(&mut rng);
+        let tilt = [0.0, 0.01, 0.05][round % 3];
+        let pose = ExactPose {
+            rotation: DQuat::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), tilt)
+                * DQuat::from_rotation_y(rng.range(0.0, TAU)),
+            translation: DVec3::new(0.3, 0.5 + rng.range(-0.02, 0.0), -0.2),
+        }
+        .rounded();
+        let corners = prism
+            .end
+            .iter()
+            .map(|p| pose.apply(DVec3::new(p.x, -0.5, p.y)));
+        let corners: Vec<DVec3> = corners.collect();
+        let down = pose.rotation * DVec3::NEG_Y;
+        let height = |p: DVec2| {
+            corners[0].y - (down.x * (p.x - corners[0].x) + down.z * (p.y - corners[0].z)) / down.y
+        };
+        let lowest = corners.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
+        let whole: Vec<DVec2> = corners.iter().map(|p| DVec2::new(p.x, p.z)).collect();
+        let region = clip(&whole, |p| height(p) - prediction);
+        cut += usize::from(region.len() != whole.len());
+        let (area, center) = moments(&region);
+
+        let found = patch([&ground, &prism.shape], &pose, prediction).expect("it lies there");
+        let what = format!("round {round}: {found:?}");
+        assert!(
+            (found.area - area.abs()).abs() < 1e-5,
+            "{what}: area {area}"
+        );
+        let off = DVec2::new(found.center.x, found.center.z).distance(center);
+        assert!(off < 1e-4, "{what}: centre {center}");
+        assert!(
+            (found.deepest.distance - lowest).abs() < 1e-6,
+            "{what}: {lowest}"
+        );
+        assert!(
+            found.vertices.iter().all(|v| v.on_1.y.abs() < 1e-6),
+            "{what}"
+        );
+        let ids: HashSet<_> = found.vertices.iter().map(|v| v.id).collect();
+        assert_eq!(ids.len(), region.len(), "{what}");
+
+        let swapped = pose.inverse().rounded();
+        let other = patch([&prism.shape, &ground], &swapped, prediction).expect("as before");
+        assert!(
+            (other.area - found.area).abs() < 1e-4,
+            "{what} and {other:?}"
+        );
+        assert_eq!(other.vertices.len(), found.vertices.len());
+    }
+    assert!(cut > 20, "only {cut} reach out");
+    let above = Pose::translation(0.0, 3.0, 0.0);
+    let prism = prism(&mut rng).shape;
+    let far = ContactPatch::between(&*ground, &*prism, &above, 0.02);
+    assert!(far.expect("known shapes").is_none());
+}
+
 #[test]
 fn ids_are_mirrored_with_the_shapes() {
     let (a, b) = (cuboid([1.0, 0.5, 1.0]), cuboid([0.4, 0.3, 0.9]));

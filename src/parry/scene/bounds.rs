@@ -11,18 +11,20 @@ use super::why::why_not;
 use crate::epa::{self, EpaScratch};
 use crate::gjk::{self, Outcome};
 use crate::hull::Hull;
+use crate::parry::convert::HalfSpace;
+use crate::parry::half_space;
 use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
 use crate::parry::workspace::Workspace;
 use crate::pose::RelativePose;
-use crate::query::{Certificate, QueryError, SeparationBounds};
+use crate::query::{Certificate, PairMemory, QueryError, SeparationBounds};
 use crate::simplex::{DistanceSubalgorithm, Preferred};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Polytope, Support};
 use crate::tolerance::{BOUNDS_ROUNDING, GJK_CURVED_GAP, GJK_GAP_OF_SIZE};
 
 impl SeparationBounds {
-    /// Bounds for a hull and a hull, cuboid, triangle, ball, capsule, segment, cylinder or cone, rounded or
-    /// not, in either order. `pos12` is the pose of shape 2 in the frame of shape 1.
+    /// Bounds for a hull and a hull, cuboid, triangle, ball, capsule, segment, cylinder, cone or half-space,
+    /// rounded or not, in either order. `pos12` is the pose of shape 2 in the frame of shape 1.
     ///
     /// The bounds differ by at most 2e-6 of the smaller shape's size, or with cylinders and cones 1e-6 of both
     /// sizes; or by 1e-9 of a large distance. They are about the hull as it was prepared.
@@ -69,6 +71,8 @@ struct BoundsQuery<'a> {
 impl PairVisitor for BoundsQuery<'_> {
     type Answer = SeparationBounds;
 
+    const HALF_SPACES: bool = true;
+
     const CURVED: bool = true;
 
     fn visit<B: Polytope>(
@@ -87,6 +91,26 @@ impl PairVisitor for BoundsQuery<'_> {
     ) -> Result<Self::Answer, Unsupported> {
         self.bounds(pair, GJK_CURVED_GAP, workspace)
     }
+
+    fn visit_half_space(
+        &mut self,
+        pair: &Pair<'_, HalfSpace>,
+        _: &mut Workspace,
+    ) -> Result<Self::Answer, Unsupported> {
+        let pose = pair.pose(valid_pose(self.pos12)?);
+        let near = half_space::deepest(pair, &pose, &PairMemory::None, &mut Cost::default());
+        let origin = pose.point_to_1(DVec3::ZERO);
+        let size = pair.hull.radius() + pair.hull.center().length() + origin.length();
+        let certificate = Certificate::Height(near.on_1);
+        let above = (near.normal, near.normal.dot(origin));
+        finish(
+            pair,
+            &pose,
+            above,
+            (near.signed_distance, certificate),
+            size,
+        )
+    }
 }
 
 impl BoundsQuery<'_> {
@@ -100,35 +124,45 @@ impl BoundsQuery<'_> {
         let cso = pair.cso(&pose);
         let found = search(&cso, gap, &mut workspace.epa);
         let (normal, upper, certificate) = found.ok_or(Unsupported)?;
-        let rounding = BOUNDS_ROUNDING * (cso.size() + cso.center().length());
-        let in_2 = pose.direction_to_2(normal);
-        let planes = [
-            pair.hull.extent(normal) + pair.border_radii[0],
-            normal.dot(pose.point_to_1(DVec3::ZERO))
-                - pair.other.extent(-in_2)
-                - pair.border_radii[1],
-        ];
-        let border = pair.border_radii[0] + pair.border_radii[1];
-        let kernel = SeparationBounds {
-            lower: planes[1] - planes[0] - rounding,
-            upper: upper - border + rounding,
-            normal,
-            planes,
-            certificate,
-            border,
-        };
-        if !kernel.lower.is_finite() || !kernel.upper.is_finite() {
-            return Err(Unsupported);
-        }
-        Ok(if pair.order.is_reversed() {
-            reversed(kernel, &pose)
-        } else {
-            kernel
-        })
+        let lowest = normal.dot(pose.point_to_1(DVec3::ZERO))
+            - pair.other.extent(-pose.direction_to_2(normal));
+        let above = (normal, lowest - pair.border_radii[1]);
+        let size = cso.size() + cso.center().length();
+        finish(pair, &pose, above, (upper, certificate), size)
     }
 }
 
-/// The best separating normal, and an upper bound of the signed distance with its certificate.
+/// Bounds from a plane above all of the hull and one below all of the other shape, and from an upper bound of
+/// the distance without borders, with its certificate.
+fn finish<B>(
+    pair: &Pair<'_, B>,
+    pose: &RelativePose,
+    (normal, above): (DVec3, f64),
+    (upper, certificate): (f64, Certificate),
+    size: f64,
+) -> Result<SeparationBounds, Unsupported> {
+    let planes = [pair.hull.extent(normal) + pair.border_radii[0], above];
+    let border = pair.border_radii[0] + pair.border_radii[1];
+    let rounding = BOUNDS_ROUNDING * size;
+    let kernel = SeparationBounds {
+        lower: planes[1] - planes[0] - rounding,
+        upper: upper - border + rounding,
+        normal,
+        planes,
+        certificate,
+        border,
+    };
+    if !kernel.lower.is_finite() || !kernel.upper.is_finite() {
+        return Err(Unsupported);
+    }
+    Ok(if pair.order.is_reversed() {
+        reversed(kernel, pose)
+    } else {
+        kernel
+    })
+}
+
+/// The normal that separates most, and an upper bound of the signed distance with its certificate.
 fn search<B: Support>(
     cso: &Cso<'_, Hull, B>,
     gap: f64,
@@ -206,6 +240,7 @@ fn reversed(bounds: SeparationBounds, pose: &RelativePose) -> SeparationBounds {
                 let mirrored = |[a, b, c]: [[DVec3; 2]; 3]| [a, c, b].map(points);
                 Certificate::Surface(faces.into_iter().map(mirrored).collect())
             }
+            Certificate::Height(point) => Certificate::Height(pose.point_to_2(point)),
         },
         ..bounds
     }

@@ -7,6 +7,8 @@ use parry3d::shape::Shape;
 
 use super::why::why_not;
 use crate::manifold::{self, PatchCorner};
+use crate::parry::convert::HalfSpace;
+use crate::parry::half_space;
 use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
 use crate::parry::scene::caller::{CallerProximity, KernelFrame};
 use crate::parry::workspace::Workspace;
@@ -15,12 +17,12 @@ use crate::query::{
     QueryError, RelativePose,
 };
 use crate::stats::Cost;
-use crate::support::Polytope;
+use crate::support::{Polytope, Support};
 
 impl ContactPatch {
-    /// The patch of a hull and a hull, cuboid, triangle, ball, capsule or segment, rounded or not, in either
-    /// order, if they touch, overlap, or are at most `prediction` apart; otherwise `None`. `pos12` is the
-    /// pose of shape 2 in the frame of shape 1.
+    /// The patch of a hull and a hull, cuboid, triangle, ball, capsule, segment or half-space, rounded or
+    /// not, in either order, if they touch, overlap, or are at most `prediction` apart; otherwise `None`.
+    /// `pos12` is the pose of shape 2 in the frame of shape 1.
     ///
     /// The deepest point is exact to 1e-5 of the size, and if faces meet, so are the others. If corners or
     /// edges meet, the polygon is that of their faces that face each other most, as far as these are within
@@ -74,6 +76,8 @@ struct PatchQuery<'a> {
 impl PairVisitor for PatchQuery<'_> {
     type Answer = Option<ContactPatch>;
 
+    const HALF_SPACES: bool = true;
+
     fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,
@@ -92,10 +96,24 @@ impl PairVisitor for PatchQuery<'_> {
         let corners = manifold::contact_polygon(&cso, &near, max_distance, &mut workspace.clip);
         Ok(Some(to_caller(pair, &pose, &near, &corners)))
     }
+
+    fn visit_half_space(
+        &mut self,
+        pair: &Pair<'_, HalfSpace>,
+        _: &mut Workspace,
+    ) -> Result<Self::Answer, Unsupported> {
+        let pose = pair.pose(valid_pose(self.pos12)?);
+        let max_distance = pair.core_distance(self.prediction, pair.hull.radius());
+        let near = half_space::deepest(pair, &pose, &PairMemory::None, &mut Cost::default());
+        Ok((near.signed_distance <= max_distance).then(|| {
+            let corners = manifold::half_space_polygon(pair.hull, &near, max_distance);
+            to_caller(pair, &pose, &near, &corners)
+        }))
+    }
 }
 
 /// The patch as the caller sees it.
-fn to_caller<B: Polytope>(
+fn to_caller<B>(
     pair: &Pair<'_, B>,
     pose: &RelativePose,
     near: &Proximity,
