@@ -97,6 +97,7 @@ mod tuning;
 pub use hull::{Hull, HullError};
 pub use parry::dispatcher::IsaGjkDispatcher;
 pub use parry::hull_shape::{HullShape, PreparedShapes};
+pub use parry::recording;
 pub use stats::{Left, Stage, Stats};
 
 /// Everything that a user of a physics world needs.
@@ -151,6 +152,10 @@ struct Readme;
 #[cfg(doctest)]
 #[doc = include_str!("../docs/tips.md")]
 struct Tips;
+
+#[cfg(doctest)]
+#[doc = include_str!("../docs/reporting.md")]
+struct Reporting;
 
 #[cfg(doctest)]
 #[doc = include_str!("../docs/bevy.md")]

@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicU64, AtomicUsize, Ordering};
 
 /// The stage of the coherent query that gave a pair its answer, cheapest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -69,7 +69,7 @@ impl Stage {
     }
 }
 
-/// Why the contacts of a pair with a hull were left to the fallback dispatcher, or to parry's routine.
+/// Why the contacts of a pair were left to the fallback dispatcher, or to parry's routine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 #[non_exhaustive]
@@ -84,17 +84,20 @@ pub enum Left {
     CurvedContact,
     /// The relative pose is not finite.
     NotFinite,
+    /// Neither shape is a hull, and they are not two capsules.
+    NoHull,
 }
 
 impl Left {
     /// The number of reasons.
-    pub const COUNT: usize = 4;
+    pub const COUNT: usize = 5;
     /// All reasons, in the order of [`Stats::left_to_fallback`].
     pub const ALL: [Self; Self::COUNT] = [
         Self::HullNotPrepared,
         Self::OtherShape,
         Self::CurvedContact,
         Self::NotFinite,
+        Self::NoHull,
     ];
 
     /// A short name for tables.
@@ -104,6 +107,19 @@ impl Left {
             Self::OtherShape => "other shape",
             Self::CurvedContact => "cylinder or cone",
             Self::NotFinite => "pose not finite",
+            Self::NoHull => "no hull",
+        }
+    }
+
+    /// What the log says when it happens first, where something is wrong with the world.
+    const fn warning(self) -> Option<&'static str> {
+        match self {
+            Self::HullNotPrepared => Some(
+                "a plain hull is flat, not convex, too large or not finite: its contacts are left to the \
+                 fallback, and may be missing. `HullShape` names the reason",
+            ),
+            Self::NotFinite => Some("the pose of a pair with a hull is not finite"),
+            Self::OtherShape | Self::CurvedContact | Self::NoHull => None,
         }
     }
 }
@@ -114,8 +130,7 @@ impl Left {
 pub struct Stats {
     /// Queries answered by each stage, indexed like [`Stage::ALL`].
     pub answered: [u64; Stage::COUNT],
-    /// Contact updates of pairs with a hull that were left to the fallback, indexed like [`Left::ALL`].
-    /// Pairs without a hull are not counted.
+    /// Contact updates that were left to the fallback, indexed like [`Left::ALL`].
     pub left_to_fallback: [u64; Left::COUNT],
     /// GJK iterations and EPA expansions.
     pub iterations: u64,
@@ -170,6 +185,8 @@ pub struct Cost {
 struct Shard {
     answered: [AtomicU64; Stage::COUNT],
     left: [AtomicU64; Left::COUNT],
+    /// Bits of those reasons that the log knows; in the first shard, for all.
+    warned: AtomicU8,
     iterations: AtomicU64,
     supports: AtomicU64,
     climb_moves: AtomicU64,
@@ -215,10 +232,21 @@ impl SharedStats {
         add(&shard.fallbacks, cost.fallbacks);
     }
 
-    /// Adds one pair that the fallback gets.
+    /// Adds one pair that the fallback gets. What is wrong with the world goes to the log, once.
     #[inline]
     pub fn record_left(&self, why: Left) {
         add(&self.0[SHARD.with(|s| *s)].left[why as usize], 1);
+        if let Some(warning) = why.warning() {
+            self.warn_once(why, warning);
+        }
+    }
+
+    #[cold]
+    fn warn_once(&self, why: Left, warning: &str) {
+        let bit = 1 << why as u8;
+        if self.0[0].warned.fetch_or(bit, Ordering::Relaxed) & bit == 0 {
+            log::warn!("{warning}");
+        }
     }
 
     /// The sum over all threads.

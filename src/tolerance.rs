@@ -102,6 +102,10 @@ pub const MIN_DIRECTED_DISTANCE: f64 = 1e-10;
 /// products of coordinates.
 pub const BOUNDS_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// The deepest contact of a manifold looks wrong where it is beyond proved bounds of its depth by more than
+/// this share of the larger shape's diameter: the promised accuracy.
+pub const SUSPECT: f64 = 1e-5;
+
 /// A penetration depth is certified if its upper and lower bound differ by less than this share of the
 /// smaller shape's radius: a tenth of the promised accuracy.
 pub const DEPTH_GAP: f64 = 1e-6;

@@ -25,6 +25,10 @@ impl<'a> Constraints<'a> {
         constraints.map_or(Self::None, Self::Given)
     }
 
+    pub fn are_none(&self) -> bool {
+        matches!(self, Self::None)
+    }
+
     /// The normals to choose from in the place of `normal`, as the part sees them: those of its outer
     /// faces, and of the faces next to these. None where `normal` is out of the surface itself.
     ///

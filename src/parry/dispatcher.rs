@@ -1,5 +1,7 @@
 //! The plug: rapier's narrow phase asks [`IsaGjkDispatcher`] instead of parry's own dispatcher.
 
+use std::sync::Arc;
+
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints};
 use parry3d::query::{
@@ -12,6 +14,7 @@ use crate::parry::composite;
 use crate::parry::constraints::Constraints;
 use crate::parry::hull_cache::epoch::{Epoch, EpochSource};
 use crate::parry::operand::Operand;
+use crate::parry::recording::Recorder;
 use crate::parry::update::Updater;
 use crate::parry::workspace;
 use crate::stats::{SharedStats, Stats};
@@ -29,6 +32,7 @@ pub struct IsaGjkDispatcher<F = DefaultQueryDispatcher> {
     pub(crate) fallback: F,
     stats: SharedStats,
     epochs: EpochSource,
+    recorder: Option<Arc<Recorder>>,
 }
 
 impl Default for IsaGjkDispatcher {
@@ -61,6 +65,37 @@ impl<F> IsaGjkDispatcher<F> {
             fallback,
             stats: SharedStats::default(),
             epochs: EpochSource::default(),
+            recorder: None,
+        }
+    }
+
+    /// The same with someone who looks at each pair, and writes down those whose contacts look wrong: see
+    /// [`recording`](crate::recording). Clones that are made of it share the recorder.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    ///
+    /// use isa_gjk::IsaGjkDispatcher;
+    /// use isa_gjk::recording::Recorder;
+    /// use rapier3d::prelude::*;
+    ///
+    /// let path = std::env::temp_dir().join("isa-gjk-wrong.pairs");
+    /// let recorder = Arc::new(Recorder::create(&path)?);
+    /// let dispatcher = IsaGjkDispatcher::default().with_recorder(recorder.clone());
+    /// let mut world = PhysicsWorld {
+    ///     narrow_phase: NarrowPhase::with_query_dispatcher(dispatcher),
+    ///     ..PhysicsWorld::default()
+    /// };
+    /// world.step();
+    /// println!("{} pairs look wrong", recorder.summary().recorded);
+    /// # std::fs::remove_file(&path)?;
+    /// # Ok::<(), std::io::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_recorder(self, recorder: impl Into<Arc<Recorder>>) -> Self {
+        Self {
+            recorder: Some(recorder.into()),
+            ..self
         }
     }
 
@@ -68,6 +103,7 @@ impl<F> IsaGjkDispatcher<F> {
         Updater {
             fallback: &self.fallback,
             stats: &self.stats,
+            recorder: self.recorder.as_deref(),
             epoch,
         }
     }

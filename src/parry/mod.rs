@@ -13,6 +13,7 @@ mod manifold;
 mod operand;
 mod order;
 mod pair;
+pub mod recording;
 mod scaled;
 mod scene;
 mod update;

@@ -10,12 +10,15 @@ use crate::parry::hull_cache::epoch::Epoch;
 use crate::parry::manifold::UpdateManifold;
 use crate::parry::operand::Operand;
 use crate::parry::pair;
-use crate::stats::SharedStats;
+use crate::parry::recording::{PairView, Recorder, bare};
+use crate::stats::{Left, SharedStats};
 
 /// What the updates of one call have in common.
 pub(crate) struct Updater<'a, F> {
     pub fallback: &'a F,
     pub stats: &'a SharedStats,
+    /// Who looks at each pair, if anybody does.
+    pub recorder: Option<&'a Recorder>,
     /// In which the shapes are unchanged.
     pub epoch: Epoch,
 }
@@ -45,6 +48,58 @@ impl<F> Updater<'_, F> {
         C: Default + Copy + Send + Sync,
         F: PersistentQueryDispatcher<M, C>,
     {
+        match self.recorder {
+            Some(recorder) if recorder.is_open() => {
+                self.update_recorded(recorder, pos12, operands, constraints, prediction, manifold)
+            }
+            _ => self.answer(pos12, operands, constraints, prediction, manifold),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn update_recorded<M, C>(
+        self,
+        recorder: &Recorder,
+        pos12: &Pose,
+        operands: [Operand<'_>; 2],
+        constraints: [Constraints<'_>; 2],
+        prediction: Real,
+        manifold: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported>
+    where
+        M: Default + Clone + Send + Sync,
+        C: Default + Copy + Send + Sync,
+        F: PersistentQueryDispatcher<M, C>,
+    {
+        let before = bare(manifold);
+        self.answer(pos12, operands, constraints, prediction, manifold)?;
+        recorder.look_at(&PairView {
+            shapes: map_pair(operands, |operand| operand.shape),
+            pos12,
+            prediction,
+            has_corrected_normals: !constraints.iter().all(Constraints::are_none),
+            before: &before,
+            after: &bare(manifold),
+        });
+        Ok(())
+    }
+
+    // perf: as above.
+    #[inline(always)]
+    fn answer<M, C>(
+        self,
+        pos12: &Pose,
+        operands: [Operand<'_>; 2],
+        constraints: [Constraints<'_>; 2],
+        prediction: Real,
+        manifold: &mut ContactManifold<M, C>,
+    ) -> Result<(), Unsupported>
+    where
+        M: Default + Clone + Send + Sync,
+        C: Default + Copy + Send + Sync,
+        F: PersistentQueryDispatcher<M, C>,
+    {
         let [g1, g2] = map_pair(operands, |operand| operand.shape);
         let has_hull = operands[0].is_hull() || operands[1].is_hull();
         let update = UpdateManifold {
@@ -57,12 +112,13 @@ impl<F> Updater<'_, F> {
         if pair::visit_operands(operands, self.epoch, update).is_ok() {
             return Ok(());
         }
-        if has_hull {
-            self.stats.record_left(pair::why_left(pos12, [g1, g2]));
-        }
-        if !has_hull && update_capsules(pos12, [g1, g2], prediction, manifold).is_ok() {
+        self.stats.record_left(if has_hull {
+            pair::why_left(pos12, [g1, g2])
+        } else if update_capsules(pos12, [g1, g2], prediction, manifold).is_ok() {
             return Ok(());
-        }
+        } else {
+            Left::NoHull
+        });
         let [c1, c2] = constraints;
         c1.with(|c1| {
             c2.with(|c2| {

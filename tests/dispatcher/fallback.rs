@@ -170,14 +170,16 @@ fn only_what_is_not_ours_reaches_the_fallback() {
 }
 
 #[test]
-fn pairs_with_a_hull_are_counted_by_what_leaves_them() {
+fn pairs_are_counted_by_what_leaves_them() {
     let (hull, ball) = (hull(), SharedShape::ball(0.5));
     let near = Pose::translation(0.4, 0.3, 0.2);
     let nowhere = Pose::translation(Real::NAN, 0.0, 0.0);
     let degenerate = SharedShape::ball(-1.0);
+    let capsule = SharedShape::capsule_y(0.5, 0.3);
     let cases = [
         (near, [&hull, &ball], None),
-        (near, [&ball, &ball], None),
+        (near, [&ball, &ball], Some(Left::NoHull)),
+        (near, [&capsule, &capsule], None),
         (near, [&hull, &flat()], Some(Left::HullNotPrepared)),
         (near, [&flat(), &ball], Some(Left::HullNotPrepared)),
         (near, [&three_points(), &ball], Some(Left::HullNotPrepared)),

@@ -23,6 +23,7 @@ mod no_allocations;
 mod no_pair_lost;
 mod parry_regressions;
 mod patches;
+mod recording;
 mod round_pairs;
 mod scene_queries;
 mod sizes;

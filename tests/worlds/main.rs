@@ -6,6 +6,7 @@ mod fast_hull;
 mod hull_shape_world;
 mod inner_edges;
 mod large_grounds;
+mod left;
 mod logs;
 mod mid_run;
 mod prepared_shapes;

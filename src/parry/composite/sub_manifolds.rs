@@ -229,6 +229,7 @@ mod tests {
                 let updater = Updater {
                     fallback: &DefaultQueryDispatcher,
                     stats: &stats,
+                    recorder: None,
                     epoch: Epoch::of_pair(),
                 };
                 let mut pairs = SubManifolds::new(updater, 0.0, &mut manifolds, &mut workspace);

@@ -1,0 +1,171 @@
+//! Convex shapes as lines of a recording.
+
+use parry3d::math::{Real, Vector};
+use parry3d::shape::{
+    ConvexPolyhedron, Cuboid, HalfSpace, RoundConvexPolyhedron, RoundCuboid, Segment, Shape,
+    ShapeType, SharedShape, Triangle, TypedShape,
+};
+
+use super::error::{RecordingError, RecordingErrorKind};
+use super::lines::{self, Lines};
+use crate::hull::build::polyhedron;
+use crate::parry::hull_shape::HullShape;
+
+/// What a shape is made of, in the order in which it is written.
+struct Description<'a> {
+    name: &'static str,
+    numbers: Vec<Real>,
+    surface: Option<&'a ConvexPolyhedron>,
+}
+
+impl<'a> Description<'a> {
+    fn of(shape: &'a dyn Shape) -> Option<Self> {
+        use TypedShape as Typed;
+        let is_prepared = shape.as_shape::<HullShape>().is_some();
+        if shape.shape_type() == ShapeType::Custom && !is_prepared {
+            // What it shows as its typed shape may be a likeness only.
+            return None;
+        }
+        let mut surface = None;
+        let (name, numbers) = match shape.as_typed_shape() {
+            Typed::ConvexPolyhedron(hull) => {
+                surface = Some(hull);
+                let name = if is_prepared { "hull-shape" } else { "hull" };
+                (name, vec![])
+            }
+            Typed::RoundConvexPolyhedron(round) => {
+                surface = Some(&round.inner_shape);
+                ("round-hull", vec![round.border_radius])
+            }
+            Typed::Ball(ball) => ("ball", vec![ball.radius]),
+            Typed::Cuboid(cuboid) => ("cuboid", cuboid.half_extents.to_array().to_vec()),
+            Typed::RoundCuboid(round) => {
+                let half_extents = round.inner_shape.half_extents.to_array();
+                (
+                    "round-cuboid",
+                    [&half_extents, &[round.border_radius][..]].concat(),
+                )
+            }
+            Typed::Capsule(capsule) => {
+                let Segment { a, b } = capsule.segment;
+                ("capsule", [&flat(&[a, b])[..], &[capsule.radius]].concat())
+            }
+            Typed::Segment(Segment { a, b }) => ("segment", flat(&[*a, *b])),
+            Typed::Triangle(Triangle { a, b, c }) => ("triangle", flat(&[*a, *b, *c])),
+            Typed::RoundTriangle(round) => {
+                let Triangle { a, b, c } = round.inner_shape;
+                let corners = flat(&[a, b, c]);
+                (
+                    "round-triangle",
+                    [&corners[..], &[round.border_radius]].concat(),
+                )
+            }
+            Typed::HalfSpace(half_space) => ("half-space", flat(&[half_space.normal])),
+            Typed::Cylinder(cylinder) => ("cylinder", vec![cylinder.half_height, cylinder.radius]),
+            Typed::RoundCylinder(round) => {
+                let cylinder = round.inner_shape;
+                let numbers = [cylinder.half_height, cylinder.radius, round.border_radius];
+                ("round-cylinder", numbers.to_vec())
+            }
+            Typed::Cone(cone) => ("cone", vec![cone.half_height, cone.radius]),
+            Typed::RoundCone(round) => {
+                let cone = round.inner_shape;
+                let numbers = [cone.half_height, cone.radius, round.border_radius];
+                ("round-cone", numbers.to_vec())
+            }
+            _ => return None,
+        };
+        Some(Self {
+            name,
+            numbers,
+            surface,
+        })
+    }
+}
+
+fn flat(points: &[Vector]) -> Vec<Real> {
+    points.iter().flat_map(|p| p.to_array()).collect()
+}
+
+/// Appends a shape to `text`; `None` if a recording cannot have it.
+pub(super) fn write(shape: &dyn Shape, text: &mut String) -> Option<()> {
+    let Description {
+        name,
+        numbers,
+        surface,
+    } = Description::of(shape)?;
+    lines::push(&format!("shape {name}"), &numbers, text);
+    let Some(surface) = surface else {
+        return Some(());
+    };
+    let triangles = triangles(surface)?;
+    lines::push("points", &[surface.points().len()], text);
+    for point in surface.points() {
+        lines::push("", &point.to_array(), text);
+    }
+    lines::push("triangles", &[triangles.len()], text);
+    for triangle in triangles {
+        lines::push("", &triangle, text);
+    }
+    Some(())
+}
+
+/// The surface of a polyhedron, if parry makes a polyhedron of it again.
+fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
+    let triangles = polyhedron::triangles(polyhedron).unwrap_or_else(|| polyhedron.to_trimesh().1);
+    let points = polyhedron.points().to_vec();
+    ConvexPolyhedron::from_convex_mesh(points, &triangles).map(|_| triangles)
+}
+
+/// Reads a shape, from its first line on.
+pub(super) fn read(lines: &mut Lines<'_>) -> Result<SharedShape, RecordingError> {
+    let mut words = lines.after("shape")?;
+    let name = words.next_word()?;
+    let shape = match name {
+        "hull" => SharedShape::new(surface(lines)?),
+        "hull-shape" => {
+            let hull = HullShape::try_from(surface(lines)?);
+            SharedShape::new(hull.map_err(|_| lines.error(RecordingErrorKind::BadShape))?)
+        }
+        "round-hull" => SharedShape::new(RoundConvexPolyhedron {
+            border_radius: words.number()?,
+            inner_shape: surface(lines)?,
+        }),
+        "ball" => SharedShape::ball(words.number()?),
+        "cuboid" => SharedShape::new(Cuboid::new(words.vector()?)),
+        "round-cuboid" => SharedShape::new(RoundCuboid {
+            inner_shape: Cuboid::new(words.vector()?),
+            border_radius: words.number()?,
+        }),
+        "capsule" => SharedShape::capsule(words.vector()?, words.vector()?, words.number()?),
+        "segment" => SharedShape::segment(words.vector()?, words.vector()?),
+        "triangle" => SharedShape::triangle(words.vector()?, words.vector()?, words.vector()?),
+        "round-triangle" => {
+            let [a, b, c] = [words.vector()?, words.vector()?, words.vector()?];
+            SharedShape::round_triangle(a, b, c, words.number()?)
+        }
+        "half-space" => SharedShape::new(HalfSpace {
+            normal: words.vector()?,
+        }),
+        "cylinder" => SharedShape::cylinder(words.number()?, words.number()?),
+        "round-cylinder" => {
+            SharedShape::round_cylinder(words.number()?, words.number()?, words.number()?)
+        }
+        "cone" => SharedShape::cone(words.number()?, words.number()?),
+        "round-cone" => SharedShape::round_cone(words.number()?, words.number()?, words.number()?),
+        _ => return Err(words.error(RecordingErrorKind::UnknownShape(name.to_owned()))),
+    };
+    words.end()?;
+    Ok(shape)
+}
+
+fn surface(lines: &mut Lines<'_>) -> Result<ConvexPolyhedron, RecordingError> {
+    let points = lines.list("points", |words| words.vector())?;
+    let triangles = lines.list("triangles", |words| words.numbers::<u32, 3>())?;
+    let is_known = |corner: &u32| (*corner as usize) < points.len();
+    let bad = lines.error(RecordingErrorKind::BadShape);
+    if !triangles.as_flattened().iter().all(is_known) {
+        return Err(bad);
+    }
+    ConvexPolyhedron::from_convex_mesh(points, &triangles).ok_or(bad)
+}
