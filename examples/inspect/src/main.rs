@@ -2,12 +2,13 @@
 //! out: `cargo run --release -p inspect -- --help`.
 
 mod picture;
+mod recorded;
 mod svg;
 
 use std::error::Error;
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Parser, ValueEnum, value_parser};
 use glam::Vec3;
@@ -22,9 +23,12 @@ use oorandom::Rand32;
 use rapier3d::prelude::{Pose, Real, Rotation};
 
 use picture::Snapshot;
+use recorded::Recorded;
+use svg::YAW;
 use testkit::scenes::{HullSource, hulls};
 
-/// Two hulls meet, roll over each other and part again. Draws one frame of it as an SVG picture.
+/// Two hulls meet, roll over each other and part again. Draws one frame of it as an SVG picture. With
+/// `--pair` it draws a pair that a recorder wrote down.
 #[derive(Parser)]
 #[command(name = "inspect")]
 struct Options {
@@ -56,6 +60,22 @@ struct Options {
     #[arg(long, default_value_t = 1.0, value_parser = at_least_one)]
     zoom: f64,
 
+    /// A recording of pairs, to draw one of them
+    #[arg(long, conflicts_with_all = ["frame", "frames", "shape", "vertices", "seed", "prediction"])]
+    pair: Option<PathBuf>,
+
+    /// Which pair of the recording, counted from 0
+    #[arg(long, default_value_t = 0, requires = "pair")]
+    number: usize,
+
+    /// Radians by which the picture of the recorded pair is turned: at 0 the normal points to the right
+    #[arg(long, default_value_t = YAW, requires = "pair")]
+    yaw: f64,
+
+    /// Print a test of the recorded pair, and draw nothing
+    #[arg(long, requires = "pair")]
+    test: bool,
+
     /// Where to write the picture
     #[arg(long, default_value = "inspect.svg")]
     out: PathBuf,
@@ -71,6 +91,15 @@ enum Kind {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
+    if let Some(path) = &options.pair {
+        let recorded = Recorded::open(path, options.number)?;
+        if options.test {
+            println!("{}", recorded.test());
+            return Ok(());
+        }
+        println!("{}", recorded.summary().join("\n"));
+        return write(&options.out, &recorded.draw(options.yaw, options.zoom));
+    }
     if options.frame >= options.frames {
         return Err(format!("the last frame is {}", options.frames - 1).into());
     }
@@ -100,9 +129,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let pose = place(attitude, options.frame, options.frames);
     let snapshot = ask([first, second], &pose, memory, &options)?;
     println!("{}", snapshot.summary().join("\n"));
-    fs::write(&options.out, snapshot.draw(options.zoom))
-        .map_err(|error| format!("cannot write {}: {error}", options.out.display()))?;
-    println!("drawn to {}", options.out.display());
+    write(&options.out, &snapshot.draw(options.zoom))
+}
+
+fn write(out: &Path, picture: &str) -> Result<(), Box<dyn Error>> {
+    fs::write(out, picture).map_err(|error| format!("cannot write {}: {error}", out.display()))?;
+    println!("drawn to {}", out.display());
     Ok(())
 }
 

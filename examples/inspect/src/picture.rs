@@ -8,15 +8,15 @@ use isa_gjk::internals::support::{FaceId, Polytope, Support, VertexId};
 use isa_gjk::query::{Answer, Feature, PairMemory};
 use isa_gjk::{Hull, Stage};
 
-use crate::svg::{Canvas, Style};
+use crate::svg::{Canvas, Style, YAW};
 
 /// Half the side of the squares that stand for planes, in radii.
 const PLANE: f64 = 0.5;
 /// From the palette of Okabe and Ito, whose colours the colour-blind can tell apart.
-const HULLS: [&str; 2] = ["#0072B2", "#D55E00"];
-const REMEMBERED: &str = "#E69F00";
-const ANSWER: &str = "#009E73";
-const PATCH: &str = "#CC79A7";
+pub const HULLS: [&str; 2] = ["#0072B2", "#D55E00"];
+pub const REMEMBERED: &str = "#E69F00";
+pub const ANSWER: &str = "#009E73";
+pub const PATCH: &str = "#CC79A7";
 
 /// One frame of a pair, in the frame of the first hull.
 pub struct Snapshot<'a> {
@@ -81,6 +81,7 @@ impl Snapshot<'_> {
         });
         let mut canvas = Canvas::new(
             self.axis(),
+            YAW,
             points.into_iter().flatten(),
             self.middle(),
             zoom,

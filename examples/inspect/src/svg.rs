@@ -11,7 +11,7 @@ const TEXT: f64 = 600.0;
 const LINE_HEIGHT: f64 = 24.0;
 const MARGIN: f64 = 24.0;
 /// Radians by which the view is turned out of the contact plane, so that areas in it show.
-const YAW: f64 = 0.35;
+pub const YAW: f64 = 0.35;
 const PITCH: f64 = 0.3;
 
 /// How something is drawn.
@@ -60,16 +60,21 @@ pub struct Canvas {
 }
 
 impl Canvas {
-    /// A view that holds all `points`, with `axis` to the right, a little out of the page;
-    /// magnified towards `focus`, if `zoom` is above one.
-    pub fn new(axis: DVec3, points: impl Iterator<Item = DVec3>, focus: DVec3, zoom: f64) -> Self {
+    /// A view that holds all `points`, with `axis` to the right, out of the page by `yaw`; magnified towards `focus`, if `zoom` is above one.
+    pub fn new(
+        axis: DVec3,
+        yaw: f64,
+        points: impl Iterator<Item = DVec3>,
+        focus: DVec3,
+        zoom: f64,
+    ) -> Self {
         let up = axis.cross(DVec3::Y).cross(axis);
         let up = up.normalize_or(axis.any_orthonormal_vector());
         let aside = axis.cross(up);
-        let level = axis * YAW.sin() + aside * YAW.cos();
+        let level = axis * yaw.sin() + aside * yaw.cos();
         let mut canvas = Self {
             elements: String::new(),
-            right: axis * YAW.cos() - aside * YAW.sin(),
+            right: axis * yaw.cos() - aside * yaw.sin(),
             up: up * PITCH.cos() - level * PITCH.sin(),
             toward: up * PITCH.sin() + level * PITCH.cos(),
             scale: 1.0,

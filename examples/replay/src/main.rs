@@ -4,6 +4,7 @@
 
 mod film;
 mod mesh;
+mod pair;
 mod tape;
 
 use std::error::Error;
@@ -58,6 +59,15 @@ struct Options {
     /// Seed of shapes and starting poses
     #[arg(long, default_value_t = 1)]
     seed: u64,
+
+    /// A recording of pairs, to see what becomes of one: its first shape is fixed, the second one free,
+    /// without gravity
+    #[arg(long, conflicts_with_all = ["scene", "bodies", "vertices", "real", "film"])]
+    pair: Option<PathBuf>,
+
+    /// Which pair of the recording, counted from 0
+    #[arg(long, default_value_t = 0, requires = "pair")]
+    number: usize,
 
     /// Where to write the page
     #[arg(long, default_value = "replay.html")]
@@ -123,7 +133,10 @@ impl Options {
             Dispatcher::Ours => "isa-gjk",
             Dispatcher::Default => "rapier's default",
         };
-        let Self { scene, .. } = self;
+        let Self { scene, pair, .. } = self;
+        if let Some(path) = pair {
+            return format!("pair {} of {}, {dispatcher}", self.number, path.display());
+        }
         format!("{scene}: {} bodies{what}, {dispatcher}", params.bodies)
     }
 }
@@ -142,7 +155,10 @@ fn write_page(options: &Options, params: &SceneParams) -> Result<(), Box<dyn Err
         Dispatcher::Ours => Some(IsaGjkDispatcher::default()),
         Dispatcher::Default => None,
     };
-    let mut world = scenes::build(options.scene, params, dispatcher)?;
+    let mut world = match &options.pair {
+        Some(path) => pair::world(path, options.number, dispatcher)?,
+        None => scenes::build(options.scene, params, dispatcher)?,
+    };
     let mut tape = Tape::new(&world);
     let seconds_per_frame = options.run(&mut world, |world| tape.record(world));
 
