@@ -11,6 +11,7 @@
 //! - `resting`: a prism of so many vertices on another one, trembling by thousandths of a millimetre.
 //! - `new`: in each frame another hull of so many vertices meets one that is known.
 //! - `compound`: a hull of eight vertices slides over a compound of so many boxes as hulls.
+//! - `cuboid-cylinder`, `cylinder-cylinder`: 5 mm apart (0), 50 mm deep (1), both on a trajectory; at rest (2).
 
 use std::collections::BTreeMap;
 use std::process::{Command, ExitCode};
@@ -28,7 +29,7 @@ const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.j
 const SHORT: usize = 40;
 
 /// The cases, and their numbers of vertices or parts.
-const CASES: [(&str, &[usize]); 7] = [
+const CASES: [(&str, &[usize]); 9] = [
     ("separated", &VERTICES),
     ("touching", &VERTICES),
     ("shallow", &VERTICES),
@@ -36,6 +37,8 @@ const CASES: [(&str, &[usize]); 7] = [
     ("resting", &[8, 16, 32, 64]),
     ("new", &[12, 60]),
     ("compound", &[9, 64]),
+    ("cuboid-cylinder", &[0, 1, 2]),
+    ("cylinder-cylinder", &[0, 1, 2]),
 ];
 const VERTICES: [usize; 7] = [8, 10, 16, 32, 100, 300, 1000];
 
@@ -113,6 +116,21 @@ fn pairs(case: &str, size: usize) -> Vec<([SharedShape; 2], Pose)> {
             };
             along([tiles, small], (0..FRAMES).map(sliding).collect())
         }
+        "cuboid-cylinder" | "cylinder-cylinder" => {
+            let cylinder = SharedShape::cylinder(0.5, 0.4);
+            let partner = if case == "cuboid-cylinder" {
+                SharedShape::cuboid(0.4, 0.5, 0.6)
+            } else {
+                cylinder.clone()
+            };
+            let shapes = [partner, cylinder];
+            let poses = match size {
+                0 => trajectory(&shapes, 0.005, 1.0),
+                1 => trajectory(&shapes, -0.05, 1.0),
+                _ => trembling(),
+            };
+            along(shapes, poses)
+        }
         _ => {
             let gap = GAPS.iter().find(|(name, _)| *name == case);
             let (_, gap) = gap.expect("a case");
@@ -121,6 +139,16 @@ fn pairs(case: &str, size: usize) -> Vec<([SharedShape; 2], Pose)> {
             along(shapes, poses)
         }
     }
+}
+
+/// A cylinder stands on another shape as high, 1 mm deep, and trembles by a thousandth of that.
+fn trembling() -> Vec<Pose> {
+    let pose = |frame: usize| {
+        let [a, b] = [0.7, 1.1].map(|rate| 1e-6 * (rate * frame as f32).sin());
+        let turn = Rotation::from_scaled_axis(Vector::new(a, 0.3, b));
+        Pose::from_parts(Vector::new(0.1 + b, 0.999 + a, 0.05), turn)
+    };
+    (0..FRAMES).map(pose).collect()
 }
 
 /// Callgrind knows it by this name.

@@ -76,6 +76,7 @@
 mod arg_max;
 #[cfg(feature = "bevy")]
 pub mod bevy;
+mod curved;
 mod epa;
 mod gjk;
 mod hull;
@@ -110,6 +111,9 @@ pub mod prelude {
 /// Kernels, for this crate's tests and benches only. They may change with any version.
 #[doc(hidden)]
 pub mod internals {
+    pub mod curved {
+        pub use crate::curved::*;
+    }
     pub mod epa {
         pub use crate::epa::*;
     }

@@ -69,7 +69,7 @@ impl Stage {
     }
 }
 
-/// Why the contacts of a pair were left to the fallback dispatcher, or to parry's routine.
+/// Why the contacts of a pair were left to the fallback dispatcher.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 #[non_exhaustive]
@@ -80,22 +80,19 @@ pub enum Left {
     HullNotPrepared,
     /// The other shape is not supported, or is degenerate.
     OtherShape,
-    /// A cylinder or a cone is near: parry's routine finds its contacts with our hull.
-    CurvedContact,
     /// The relative pose is not finite.
     NotFinite,
-    /// Neither shape is a hull, and they are not two capsules.
+    /// Neither shape is a hull, a cylinder or a cone, and they are not two capsules.
     NoHull,
 }
 
 impl Left {
     /// The number of reasons.
-    pub const COUNT: usize = 5;
+    pub const COUNT: usize = 4;
     /// All reasons, in the order of [`Stats::left_to_fallback`].
     pub const ALL: [Self; Self::COUNT] = [
         Self::HullNotPrepared,
         Self::OtherShape,
-        Self::CurvedContact,
         Self::NotFinite,
         Self::NoHull,
     ];
@@ -105,7 +102,6 @@ impl Left {
         match self {
             Self::HullNotPrepared => "hull not prepared",
             Self::OtherShape => "other shape",
-            Self::CurvedContact => "cylinder or cone",
             Self::NotFinite => "pose not finite",
             Self::NoHull => "no hull",
         }
@@ -119,7 +115,7 @@ impl Left {
                  fallback, and may be missing. `HullShape` names the reason",
             ),
             Self::NotFinite => Some("the pose of a pair with a hull is not finite"),
-            Self::OtherShape | Self::CurvedContact | Self::NoHull => None,
+            Self::OtherShape | Self::NoHull => None,
         }
     }
 }

@@ -258,5 +258,27 @@ pub const LARGEST_SCALED: f64 = 1e15;
 /// nearest points is mere rounding.
 pub const CAPSULE_TOUCH: f64 = 1e-12;
 
-/// Gaps that differ by less than this share of the radii count as equal: the promised accuracy of a contact.
+/// Gaps that differ by less than this share of a radius count as equal: half of the promised accuracy.
 pub const SAME_GAP: f64 = 1e-5;
+
+/// What is outside of an outline by less than this share of its size is on it: f64 sums of coordinates are
+/// off by a few units of 1e-16.
+pub const ON_OUTLINE: f64 = 1e-12;
+
+/// A disc leans over a flat side if its slope is above this. Below it the deepest corner of a square is
+/// as deep as the rim up to the promised accuracy, and noise must not turn the square.
+pub const LEVEL: f64 = 5e-5;
+
+/// A normal is that of a piece of surface if it is this near: what a bound loses by the difference is its
+/// square.
+pub const SAME_NORMAL: f64 = 1e-7;
+
+/// Axes span less than this sine squared where they are parallel: f64 leaves half of its digits.
+pub const PARALLEL_AXES: f64 = 1e-15;
+
+/// A search along the normals of an edge or a side ends at this angle: what it loses is the square.
+pub const SETTLED_ANGLE: f64 = 1e-9;
+
+/// Bounds of the distance of curved shapes differ by no more than this share of the smaller radius. The
+/// normal is off by the root of it, relative to the distance, and contacts beside each other by that.
+pub const FINE_GAP: f64 = 1e-9;

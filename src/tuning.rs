@@ -72,3 +72,15 @@ pub(crate) const SIDE_BY_SIDE_SINE: f64 = 0.17;
 /// If the common part of two capsules is shorter than this share of the smaller radius, it has only one
 /// contact.
 pub(crate) const SHORT_LINE: f64 = 0.05;
+
+/// Of two discs that are shifted by less than twice this share of the radius, a square in both serves as
+/// well as the ends of their lens, which turn with the shift.
+pub(crate) const SMALL_SHIFT: f64 = 0.01;
+
+/// The first step of a search along the normals of an edge or a side, as an angle. A normal of the frame
+/// before is hardly farther.
+pub(crate) const FIRST_STEP: f64 = 0.02;
+
+/// Between the bounds of a coarse search, as a share of the smaller radius: near enough to know which
+/// pieces of surface are in contact. They give the answer then.
+pub(crate) const COARSE_GAP: f64 = 0.02;

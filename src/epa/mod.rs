@@ -81,8 +81,19 @@ pub fn penetration_below<A: Support, B: Support>(
     scratch: &mut EpaScratch,
     cost: &mut Cost,
 ) -> Option<DepthSearch> {
-    let polytope = &mut scratch.polytope;
     let tolerance = DEPTH_GAP * cso.min_radius();
+    penetration_within(cso, seeds, [known_depth, tolerance], scratch, cost)
+}
+
+/// As [`penetration_below`], with bounds that may differ by another tolerance.
+pub fn penetration_within<A: Support, B: Support>(
+    cso: &Cso<'_, A, B>,
+    seeds: &[CsoVertex],
+    [known_depth, tolerance]: [f64; 2],
+    scratch: &mut EpaScratch,
+    cost: &mut Cost,
+) -> Option<DepthSearch> {
+    let polytope = &mut scratch.polytope;
     let search_radius = known_depth - tolerance;
     polytope.start(
         seed::tetrahedron(cso, seeds, cost)?,

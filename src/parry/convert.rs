@@ -8,9 +8,9 @@ use parry3d::shape::{
     Segment as ParrySegment, Triangle,
 };
 
+use crate::curved::Body;
 use crate::pose::unit_scale;
 use crate::primitive::{Cone, CuboidPolytope, Cylinder, Segment, TrianglePolytope};
-use crate::support::Support;
 use crate::tolerance::{MIN_BOX_THICKNESS, MIN_EXTENT};
 
 /// The half-space beneath the plane through its origin with this normal.
@@ -29,18 +29,18 @@ pub(crate) fn half_space(half_space: &ParryHalfSpace) -> Option<HalfSpace> {
 /// A shape of parry with a curved surface.
 pub(crate) trait CurvedShape {
     /// The shape for the kernels; `None` if it has no volume.
-    fn kernel(&self) -> Option<impl Support>;
+    fn kernel(&self) -> Option<impl Body>;
 }
 
 impl CurvedShape for ParryCylinder {
-    fn kernel(&self) -> Option<impl Support> {
+    fn kernel(&self) -> Option<impl Body> {
         let (half_height, radius) = (positive(self.half_height)?, positive(self.radius)?);
         Some(Cylinder::new(half_height, radius))
     }
 }
 
 impl CurvedShape for ParryCone {
-    fn kernel(&self) -> Option<impl Support> {
+    fn kernel(&self) -> Option<impl Body> {
         let (half_height, radius) = (positive(self.half_height)?, positive(self.radius)?);
         Some(Cone::new(half_height, radius))
     }

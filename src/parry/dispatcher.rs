@@ -19,8 +19,8 @@ use crate::parry::update::Updater;
 use crate::parry::workspace;
 use crate::stats::{SharedStats, Stats};
 
-/// A query dispatcher that answers pairs with a convex hull itself and passes every other pair
-/// on to parry's own. It also finds the parts of compounds that meet, whatever they are.
+/// A query dispatcher that answers pairs with a convex hull, a cylinder or a cone itself and passes every
+/// other pair on to parry's own. It also finds the parts of compounds that meet, whatever they are.
 ///
 /// Give it to `NarrowPhase::with_query_dispatcher`, or to `set_query_dispatcher` of a world that
 /// runs already. Clones share their statistics.
@@ -46,8 +46,7 @@ impl<F> IsaGjkDispatcher<F> {
     /// or parry's `QueryDispatcherChain` of several. [`Stats::left_to_fallback`] counts pairs that it gets
     /// although they have a hull.
     ///
-    /// The fallback gets whole pairs, and the parts of those composite shapes that we take apart. It gets
-    /// no cylinders and cones that meet hulls: parry's own routine searches these contacts on our hulls.
+    /// The fallback gets whole pairs, and the parts of those composite shapes that we take apart.
     ///
     /// ```
     /// use isa_gjk::IsaGjkDispatcher;

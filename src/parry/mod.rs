@@ -4,6 +4,7 @@ mod capsules;
 mod composite;
 mod constraints;
 mod convert;
+mod curved;
 pub(crate) mod dispatcher;
 mod half_space;
 mod hull_cache;

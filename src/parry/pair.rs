@@ -4,6 +4,7 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::Unsupported;
 use parry3d::shape::{PolygonalFeatureMap, Shape, ShapeType, TypedShape};
 
+use crate::curved::Body;
 use crate::hull::Hull;
 use crate::map_pair::map_pair;
 use crate::parry::convert::{self, CurvedShape, HalfSpace};
@@ -14,7 +15,7 @@ use crate::parry::workspace::{ThreadWorkspace, Workspace};
 use crate::pose::{RelativePose, ValidPose};
 use crate::primitive::Ball;
 use crate::stats::Left;
-use crate::support::{Cso, Polytope, Support};
+use crate::support::{Cso, Polytope};
 use crate::tolerance::MIN_DIRECTED_DISTANCE;
 
 /// A hull and another shape, as the kernels see a pair: in the frame of the hull.
@@ -97,7 +98,7 @@ pub(crate) trait PairVisitor: Sized {
 
     /// The other shape is a cylinder or a cone, which has no faces for our kernels. parry's routines use its
     /// `features`.
-    fn visit_curved<B: Support>(
+    fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
         features: &dyn PolygonalFeatureMap,

@@ -4,8 +4,8 @@
 //! a power of two is exact.
 
 use parry3d::math::{Pose, Real, Vector};
+use parry3d::query::Contact;
 use parry3d::query::details::contact_support_map_support_map;
-use parry3d::query::{Contact, ContactManifold};
 use parry3d::shape::{PolygonalFeature, PolygonalFeatureMap, SupportMap};
 
 use crate::parry::pair::Pair;
@@ -27,34 +27,12 @@ impl Scale {
         Self((-wanted.max(possible)).clamp(-126.0, 126.0).exp2() as Real)
     }
 
-    pub fn length(self, length: Real) -> Real {
-        length * self.0
-    }
-
     pub fn pose(self, pose: &Pose) -> Pose {
         Pose::from_parts(pose.translation * self.0, pose.rotation)
     }
 
     pub fn shape(self, shape: &dyn PolygonalFeatureMap) -> Scaled<'_> {
         Scaled { shape, scale: self }
-    }
-
-    /// Runs `update` on a manifold with scaled lengths, and scales them back.
-    pub fn with_manifold<M, C>(
-        self,
-        manifold: &mut ContactManifold<M, C>,
-        update: impl FnOnce(&mut ContactManifold<M, C>),
-    ) {
-        let scale = |manifold: &mut ContactManifold<M, C>, by: Real| {
-            for point in &mut manifold.points {
-                point.local_p1 *= by;
-                point.local_p2 *= by;
-                point.dist *= by;
-            }
-        };
-        scale(manifold, self.0);
-        update(manifold);
-        scale(manifold, self.0.recip());
     }
 }
 

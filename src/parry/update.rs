@@ -6,6 +6,7 @@ use parry3d::query::{ContactManifold, PersistentQueryDispatcher, Unsupported};
 use crate::map_pair::map_pair;
 use crate::parry::capsules::update_capsules;
 use crate::parry::constraints::Constraints;
+use crate::parry::curved::update_curved;
 use crate::parry::hull_cache::epoch::Epoch;
 use crate::parry::manifold::UpdateManifold;
 use crate::parry::operand::Operand;
@@ -106,16 +107,20 @@ impl<F> Updater<'_, F> {
             pos12,
             prediction,
             constraints,
-            manifold,
+            manifold: &mut *manifold,
             stats: self.stats,
         };
-        if pair::visit_operands(operands, self.epoch, update).is_ok() {
+        let is_done = if has_hull {
+            pair::visit_operands(operands, self.epoch, update).is_ok()
+        } else {
+            update_curved([g1, g2], update).is_ok()
+                || update_capsules(pos12, [g1, g2], prediction, manifold).is_ok()
+        };
+        if is_done {
             return Ok(());
         }
         self.stats.record_left(if has_hull {
             pair::why_left(pos12, [g1, g2])
-        } else if update_capsules(pos12, [g1, g2], prediction, manifold).is_ok() {
-            return Ok(());
         } else {
             Left::NoHull
         });

@@ -3,6 +3,7 @@
 use std::cell::Cell;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::curved::CurvedScratch;
 use crate::epa::{EpaScratch, PolytopeCache};
 use crate::manifold::ClipScratch;
 use crate::parry::composite::seams::SeamsCache;
@@ -63,6 +64,7 @@ impl ThreadWorkspace {
 /// Memory to work in.
 #[derive(Default)]
 pub(crate) struct Workspace {
+    pub curved: CurvedScratch,
     pub epa: EpaScratch,
     pub clip: ClipScratch,
     pub polytope_cache: PolytopeCache,

@@ -28,6 +28,19 @@ impl Cone {
             radius: radius.hypot(above_base).max(2.0 * half_height - above_base),
         }
     }
+
+    pub(crate) fn half_height(&self) -> f64 {
+        self.half_height
+    }
+
+    pub(crate) fn rim_radius(&self) -> f64 {
+        self.rim.radius
+    }
+
+    /// By how much the radius shrinks along the axis.
+    pub(crate) fn slope(&self) -> f64 {
+        0.5 * self.rim.radius / self.half_height
+    }
 }
 
 impl Support for Cone {

@@ -21,6 +21,14 @@ impl Cylinder {
             rim: Rim { radius },
         }
     }
+
+    pub(crate) fn half_height(&self) -> f64 {
+        self.half_height
+    }
+
+    pub(crate) fn rim_radius(&self) -> f64 {
+        self.rim.radius
+    }
 }
 
 impl Support for Cylinder {
@@ -28,8 +36,7 @@ impl Support for Cylinder {
     fn support(&self, dir: DVec3, _: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
         cost.supports += 1;
         let height = self.half_height.copysign(dir.y);
-        let (point, _) = self.rim.support(dir, height);
-        (point, VertexId::default())
+        (self.rim.support(dir, height).0, VertexId::default())
     }
 
     #[inline]

@@ -36,6 +36,8 @@ mod seeds;
 mod types;
 mod witness;
 
+pub(crate) use certificate::cone_contains_ball;
+
 pub use bounds::{Certificate, SeparationBounds};
 pub(crate) use certificate::flush::FlushFaces;
 pub use contact_id::ContactId;
@@ -45,7 +47,7 @@ pub use feature::Feature;
 pub(crate) use feature::vertices;
 pub(crate) use last_contacts::{LastContacts, first_least};
 pub use patch::{ContactPatch, PatchVertex};
-pub(crate) use pipeline::{AxisOnly, Distance, Full, Sink};
+pub(crate) use pipeline::{Distance, Full, Sink};
 pub use types::{Answer, PairMemory, Proximity};
 
 pub use crate::epa::EpaScratch;

@@ -159,25 +159,6 @@ impl<A: Support, B: Support> Strategy<A, B> for Distance {
     }
 }
 
-/// Tries the axis and then a tilted one. There is no answer if neither separates.
-#[derive(Clone, Copy)]
-pub(crate) struct AxisOnly;
-
-impl<A: Support, B: Support> Strategy<A, B> for AxisOnly {
-    fn start_from_axis(
-        self,
-        query: &mut Query<'_, '_, A, B>,
-        axis: DVec3,
-        vertex: CsoVertex,
-        _: Start,
-    ) -> Found {
-        match query.test_axis(tilted(axis, &vertex), vertex.ids) {
-            AxisTest::Separating(apart) => Some((Answer::Separated(apart), Stage::Axis)),
-            AxisTest::Supporting(_) => None,
-        }
-    }
-}
-
 /// An axis tilted away from where the shapes come too near along it.
 #[inline]
 fn tilted(axis: DVec3, too_near: &CsoVertex) -> DVec3 {

@@ -9,6 +9,8 @@ mod changed_shapes;
 mod coherence;
 mod contacts;
 mod curved;
+mod curved_pairs;
+mod curved_patches;
 mod exact_cases;
 mod fallback;
 mod families;

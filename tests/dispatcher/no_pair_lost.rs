@@ -6,6 +6,7 @@
 //! exactly what parry supports, finds contacts wherever parry does, and passes every pair without a convex
 //! hull through untouched, to the last bit. Of compounds only the parts are: we find them ourselves, and
 //! their poses may be rounded otherwise. Two capsules are ours: they have the same depth, and more contacts.
+//! So are cylinders and cones.
 
 use std::fmt::Debug;
 
@@ -27,6 +28,11 @@ fn nudged(pose: &Pose) -> Pose {
         pose.translation + Vector::new(-0.002, -0.003, 0.001),
         turn * pose.rotation,
     )
+}
+
+/// Contacts of cylinders and cones are ours.
+fn is_curved(sample: &ShapeSample) -> bool {
+    sample.name.contains("cylinder") || sample.name.contains("cone")
 }
 
 /// Every ordered pair of shapes, except those that make parry itself panic.
@@ -108,7 +114,10 @@ fn contacts_are_found_wherever_parry_finds_them() {
                 let we_can = contacts(&dispatcher, pair, &pose, &mut ours);
                 let they_can = contacts(&DefaultQueryDispatcher, pair, &pose, &mut theirs);
                 assert_eq!(we_can, they_can, "supported: {what}");
-                if pair.iter().any(|sample| sample.has_hull) {
+                if pair
+                    .iter()
+                    .any(|sample| sample.has_hull || is_curved(sample))
+                {
                     // Ours to answer.
                 } else if pair.iter().any(|sample| sample.name == "compound")
                     || pair.iter().all(|sample| sample.name == "capsule")

@@ -1,6 +1,7 @@
 //! What happens in rapier's worlds.
 
 mod character;
+mod curved;
 mod determinism;
 mod fast_hull;
 mod hull_shape_world;

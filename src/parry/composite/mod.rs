@@ -21,6 +21,7 @@ pub(crate) mod scene;
 pub(crate) mod seams;
 mod sub_manifolds;
 
+use crate::parry::curved::is_curved;
 use crate::parry::operand;
 use crate::parry::order::PairOrder;
 use crate::parry::update::Updater;
@@ -124,7 +125,8 @@ pub(crate) fn reset_to_single<M: Default + Clone, C: Default + Copy>(
     manifolds.push(ContactManifold::with_data(0, 0, M::default()));
 }
 
-/// A compound against another one or a convex shape, or a hull against a shape made of triangles.
+/// A compound against another one or a convex shape, or a hull, a cylinder or a cone against a shape made of
+/// triangles.
 /// `false` for other pairs.
 ///
 /// We answer compounds whether or not they have a hull: finding out would mean looking at every part in every
@@ -157,7 +159,7 @@ where
             return true;
         }
         if let Some(triangles) = Triangles::of(first)
-            && operand::is_hull(second)
+            && (operand::is_hull(second) || is_curved(second))
         {
             let sub_manifolds = begin(manifolds, workspace);
             mesh::triangles_and_hull(sub_manifolds, pos12, triangles, second, order);

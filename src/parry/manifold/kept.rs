@@ -55,31 +55,44 @@ impl<M, C> KernelManifold<'_, M, C> {
         normals: &Normals,
         radius: f64,
     ) -> bool {
+        let kept = self.keep_places(last, near.signed_distance, normals, radius);
+        if let Some(deepest) = kept {
+            self.name_deepest(deepest, near.features);
+        }
+        kept.is_some()
+    }
+
+    /// The same, without new names: the number of the deepest contact if they stay.
+    #[inline]
+    pub fn keep_places(
+        &mut self,
+        last: Option<&LastContacts>,
+        signed_distance: f64,
+        normals: &Normals,
+        radius: f64,
+    ) -> Option<usize> {
         let old_normals = [self.manifold.local_n1, self.manifold.local_n2];
-        let Some(last) = last else {
-            return false;
-        };
+        let last = last?;
         if !normals.are_near(self.order.to_kernel(old_normals)) {
-            return false;
+            return None;
         }
         let normal = normals.exact[0];
         if !last.are_within(normal, KEPT_DRIFT * radius) {
-            return false;
+            return None;
         }
         let distances = last.distances(normal).to_array();
         let deepest = first_least(distances);
-        let signed_distance = near.signed_distance - (self.border_radii[0] + self.border_radii[1]);
+        let signed_distance = signed_distance - (self.border_radii[0] + self.border_radii[1]);
         let excess = distances[deepest] - signed_distance;
         if excess.abs() > KEPT_DEPTH * radius {
-            return false;
+            return None;
         }
         for (point, distance) in self.manifold.points.iter_mut().zip(distances) {
             point.dist = distance as f32;
         }
         self.manifold.points[deepest].dist = signed_distance as f32;
-        self.name_deepest(deepest, near.features);
         self.set_normals(normals.rounded);
-        true
+        Some(deepest)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The contact manifold of two convex shapes, coherently.
 
-mod by_parry;
+mod curved;
 mod flush;
 mod half_space;
 mod inherit;
@@ -14,18 +14,20 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, Unsupported};
 use parry3d::shape::PolygonalFeatureMap;
 
+use crate::curved::Body;
 use crate::parry::constraints::Constraints;
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space as plane;
 use crate::parry::pair::{Pair, PairVisitor, valid_pose};
 use crate::parry::workspace::Workspace;
-use crate::query::{AxisOnly, Full, Query};
-use crate::stats::{Cost, Left, SharedStats};
+use crate::query::{Full, Query};
+use crate::stats::{Cost, SharedStats};
 use crate::support::{Polytope, Support};
+pub(crate) use curved::CurvedPair;
 use half_space::HalfSpaceContacts;
 use polytopes::PolytopeContacts;
 use record::AxisFrame;
-use sink::{ManifoldSink, NoContacts};
+use sink::ManifoldSink;
 
 /// Brings a manifold up to date.
 pub(crate) struct UpdateManifold<'a, M, C> {
@@ -107,36 +109,18 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         Ok(())
     }
 
-    /// Proves the shapes apart. What is not, or has contacts, is parry's.
-    fn visit_curved<B: Support>(
+    fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
-        features: &dyn PolygonalFeatureMap,
+        _: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
     ) -> Result<(), Unsupported> {
-        let pos12 = valid_pose(self.pos12)?;
-        if self.manifold.points.is_empty() {
-            let pose = pair.pose(pos12);
-            let cso = pair.cso(&pose);
-            let max_distance = pair.core_distance(self.prediction, cso.size());
-            let mut sink = ManifoldSink {
-                manifold: &mut *self.manifold,
-                pair,
-                frame: AxisFrame::First,
-                contacts: NoContacts,
-                last: None,
-                is_kept: false,
-            };
-            let mut cost = Cost::default();
-            let mut query = Query::new(&cso, max_distance, &mut workspace.epa, &mut cost);
-            if let Some(stage) = query.run_into(AxisOnly, &mut sink) {
-                self.stats.record(stage, &cost);
-                return Ok(());
-            }
-        }
-        self.stats.record_left(Left::CurvedContact);
-        self.update_by_parry(pair, features);
-        Ok(())
+        let pair = CurvedPair {
+            shapes: (pair.hull, pair.other),
+            border_radii: pair.border_radii,
+            order: pair.order,
+        };
+        self.update_curved(&pair, &mut workspace.curved)
     }
 }
 

@@ -13,7 +13,6 @@
 //! Anything that another dispatcher or another pair left there is only a hint.
 
 use glam::{DVec3, Vec3};
-use parry3d::math::Rotation;
 use parry3d::query::{ContactManifold, TrackedContact};
 use parry3d::shape::PackedFeatureId;
 
@@ -88,6 +87,20 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
         }
     }
 
+    /// Of shapes whose borders are no longer to be taken off.
+    pub fn with_borders(
+        manifold: &'a mut ContactManifold<M, C>,
+        order: PairOrder,
+        frame: AxisFrame<'a>,
+    ) -> Self {
+        Self {
+            manifold,
+            order,
+            border_radii: [0.0; 2],
+            frame,
+        }
+    }
+
     /// What the previous frame left. Of its contacts that is remembered which is deepest by now.
     #[inline(always)]
     pub fn memory(&self, last: Option<&LastContacts>) -> PairMemory {
@@ -146,24 +159,6 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
     #[inline(always)]
     pub fn set_normals(&mut self, normals: [Vec3; 2]) {
         [self.manifold.local_n1, self.manifold.local_n2] = self.order.to_caller(normals);
-    }
-
-    /// Runs a routine of parry. These keep the separating axis in the frame of the manifold's first shape,
-    /// pointing to the second, whose rotation in that frame is `rotation`.
-    pub fn with_parry_axis(
-        &mut self,
-        rotation: Rotation,
-        update: impl FnOnce(&mut ContactManifold<M, C>),
-    ) {
-        self.turn_axis(rotation);
-        update(self.manifold);
-        self.turn_axis(rotation.inverse());
-    }
-
-    fn turn_axis(&mut self, rotation: Rotation) {
-        if self.order.is_reversed() && self.manifold.points.is_empty() {
-            self.manifold.local_n1 = -(rotation * self.manifold.local_n1);
-        }
     }
 }
 

@@ -36,20 +36,6 @@ pub(super) trait UpdateContacts {
     ) -> bool;
 }
 
-/// Of shapes that are only proved apart.
-pub(super) struct NoContacts;
-
-impl UpdateContacts for NoContacts {
-    fn update_contacts<M, C: Default + Copy>(
-        &mut self,
-        _: &mut KernelManifold<'_, M, C>,
-        _: Option<&LastContacts>,
-        _: &Proximity,
-    ) -> bool {
-        false
-    }
-}
-
 /// Brings a manifold up to date. Only references: most pairs are apart, and what is copied for
 /// contacts would cost them more than the rest.
 pub(super) struct ManifoldSink<'a, 'p, M, C, B, U> {

@@ -8,6 +8,7 @@ use parry3d::query::Unsupported;
 use parry3d::shape::{PolygonalFeatureMap, Shape};
 
 use super::why::why_not;
+use crate::curved::Body;
 use crate::epa::{self, EpaScratch};
 use crate::gjk::{self, Outcome};
 use crate::hull::Hull;
@@ -83,7 +84,7 @@ impl PairVisitor for BoundsQuery<'_> {
         self.bounds(pair, GJK_GAP_OF_SIZE, workspace)
     }
 
-    fn visit_curved<B: Support>(
+    fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
         _: &dyn PolygonalFeatureMap,

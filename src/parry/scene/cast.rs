@@ -5,6 +5,7 @@ use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus, Unsupported};
 use parry3d::shape::{PolygonalFeatureMap, Shape};
 
+use crate::curved::Body;
 use crate::hull::Hull;
 use crate::parry::pair::{self, Pair, PairVisitor};
 use crate::parry::scene::caller::{CallerProximity, KernelFrame};
@@ -56,7 +57,7 @@ impl PairVisitor for Cast<'_> {
     }
 
     /// parry answers how deep they overlap.
-    fn visit_curved<B: Support>(
+    fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
         _: &dyn PolygonalFeatureMap,

@@ -4,6 +4,7 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::{Contact, Unsupported};
 use parry3d::shape::{PolygonalFeatureMap, Shape};
 
+use crate::curved::Body;
 use crate::epa;
 use crate::parry::convert::HalfSpace;
 use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
@@ -68,7 +69,7 @@ impl PairVisitor for ContactQuery<'_> {
     }
 
     /// parry answers how deep they overlap. If they only touch, it may fail.
-    fn visit_curved<B: Support>(
+    fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
         features: &dyn PolygonalFeatureMap,

@@ -7,6 +7,7 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::{ClosestPoints, Unsupported};
 use parry3d::shape::{PolygonalFeatureMap, Shape};
 
+use crate::curved::Body;
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space;
 use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
@@ -136,7 +137,7 @@ impl PairVisitor for SeparationQuery<'_> {
         self.separation(pair, GJK_GAP_OF_SIZE, workspace)
     }
 
-    fn visit_curved<B: Support>(
+    fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
         _: &dyn PolygonalFeatureMap,

@@ -6,3 +6,5 @@ pub(super) mod neighbors;
 mod polygon;
 pub(crate) mod verdict;
 pub(super) mod vertex_edge;
+
+pub(crate) use polygon::cone_contains_ball;

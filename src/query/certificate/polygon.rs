@@ -97,12 +97,7 @@ fn inset_among(
 /// half of this angle has the tangent `depth / inset`. In those directions the apex reaches that far, if it
 /// does so at that angle.
 #[inline]
-pub(in crate::query) fn cone_contains_ball(
-    inset: f64,
-    depth: f64,
-    apex: DVec3,
-    normal: DVec3,
-) -> bool {
+pub(crate) fn cone_contains_ball(inset: f64, depth: f64, apex: DVec3, normal: DVec3) -> bool {
     if inset <= depth.max(0.0) {
         return false;
     }

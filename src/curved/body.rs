@@ -1,0 +1,35 @@
+//! What contacts need to know of a convex shape beside its support mapping.
+
+use glam::DVec3;
+
+use super::piece::Piece;
+use crate::support::{Support, VertexId};
+
+/// What a part of a surface demands of its outward unit normal: `axis · normal = sine`. An edge has normals
+/// square to it; the side of a cylinder or a cone has normals with one angle to the axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Ruling {
+    /// A unit vector.
+    pub axis: DVec3,
+    /// Zero for an edge.
+    pub sine: f64,
+}
+
+/// A convex shape with pieces of surface. Everything is in its own frame.
+pub trait Body: Support {
+    /// The normal of the flat side at `vertex`, extreme along `dir`, that looks most along `dir`.
+    fn flat_normal(&self, dir: DVec3, vertex: VertexId) -> Option<DVec3>;
+
+    /// The edges at `vertex`, extreme along `dir`, and the ruled sides.
+    fn rulings(&self, dir: DVec3, vertex: VertexId) -> impl Iterator<Item = Ruling>;
+
+    /// The piece at `vertex`, extreme along `dir`, that looks most along `dir`. `border` is the width of the
+    /// rounded border, by which the piece is moved outwards. The corners of a polygon go to `corners`.
+    fn piece(
+        &self,
+        dir: DVec3,
+        vertex: VertexId,
+        border: f64,
+        corners: &mut Vec<(DVec3, VertexId)>,
+    ) -> Piece;
+}

@@ -1,0 +1,131 @@
+//! What proves a signed distance: the support planes along its normal from below, the patch from above.
+
+use glam::DVec3;
+
+use super::body::Body;
+use super::outline::Flat;
+use super::patch::{ContactPlace, Patch};
+use super::piece::{Generator, Piece};
+use crate::query::{Feature, cone_contains_ball};
+use crate::support::Cso;
+use crate::tolerance::SAME_NORMAL;
+
+impl Patch {
+    /// Whether the cores' signed distance is no more than `separation`, which their support planes along the
+    /// normal show, up to `tolerance`.
+    ///
+    /// Two points of cores that are apart bound their distance. A depth is bounded by a ball in the
+    /// difference: under a disc that is in it, or the sum of balls inside both cores that touch their
+    /// surfaces in a place of contact.
+    pub(super) fn proves<A: Body, B: Body>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        separation: f64,
+        tolerance: f64,
+    ) -> bool {
+        let Some(nearest) = self.deepest() else {
+            return false;
+        };
+        let wanted = separation - self.borders();
+        if nearest.distance - wanted > tolerance {
+            return false;
+        }
+        if separation > 0.0 {
+            let [p1, p2] = self.core_points(nearest);
+            return p1.distance(p2) <= separation + tolerance;
+        }
+        let place = self.middle(wanted + tolerance);
+        let depth = (-separation - tolerance).max(0.0);
+        let balls: f64 = (0..2).map(|side| self.ball(side, place[side])).sum();
+        balls >= depth
+            || (0..2).any(|side| {
+                let inset = self.disc(side, place[side]);
+                cone_contains_ball(inset, depth, cso.center(), self.normal())
+            })
+    }
+
+    /// The place with the narrowest gap.
+    pub(super) fn deepest(&self) -> Option<&ContactPlace> {
+        let mut places = self.places.iter();
+        let first = places.next()?;
+        Some(places.fold(first, |deepest, other| {
+            if other.distance < deepest.distance {
+                other
+            } else {
+                deepest
+            }
+        }))
+    }
+
+    /// The mean of all places as near as this, on both surfaces.
+    fn middle(&self, distance: f64) -> [DVec3; 2] {
+        let near = self
+            .places
+            .iter()
+            .filter(|place| place.distance <= distance);
+        let (mut sum, mut count) = ([DVec3::ZERO; 2], 0.0);
+        for place in near {
+            sum = [sum[0] + place.on_1, sum[1] + place.on_2];
+            count += 1.0;
+        }
+        sum.map(|sum| sum / count)
+    }
+
+    /// The points of the cores that the borders are around.
+    fn core_points(&self, place: &ContactPlace) -> [DVec3; 2] {
+        let points = [place.on_1, place.on_2];
+        [0, 1].map(|side| {
+            let border = self.border(side);
+            let outward = if side == 0 {
+                self.normal()
+            } else {
+                -self.normal()
+            };
+            let normal = match (&self.pieces[side], place.features[side]) {
+                (Piece::Point(_), _) | (_, Feature::Vertex(_)) => outward,
+                (Piece::Flat(flat), _) => flat.normal,
+                (Piece::Line(line), _) => line.surface.normal_at(points[side]),
+            };
+            points[side] - normal * border
+        })
+    }
+
+    /// The radius of a ball inside of a core that touches the surface at a point of a line.
+    fn ball(&self, side: usize, at: DVec3) -> f64 {
+        let Piece::Line(Generator {
+            ends,
+            surface,
+            ball,
+        }) = &self.pieces[side]
+        else {
+            return 0.0;
+        };
+        let outward = if side == 0 {
+            self.normal()
+        } else {
+            -self.normal()
+        };
+        if (outward.dot(surface.axis) - surface.sine()).abs() > SAME_NORMAL {
+            return 0.0;
+        }
+        let [low, high] = ends.map(|end| end.dot(surface.axis));
+        let share = (at.dot(surface.axis) - low) / (high - low);
+        ball.radius(share.clamp(0.0, 1.0))
+    }
+
+    /// The radius of a disc across the normal around a point of a flat side.
+    fn disc(&self, side: usize, at: DVec3) -> f64 {
+        let Some(flat @ Flat { side: face, .. }) = self.flat(side) else {
+            return 0.0;
+        };
+        let outward = if side == 0 {
+            self.normal()
+        } else {
+            -self.normal()
+        };
+        if face.normal.distance(outward) > SAME_NORMAL {
+            return 0.0;
+        }
+        flat.inset(at).unwrap_or(0.0)
+    }
+}

@@ -1,0 +1,55 @@
+//! The pieces of a cone.
+
+use glam::DVec3;
+
+use super::body::{Body, Ruling};
+use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall};
+use crate::primitive::Cone;
+use crate::support::VertexId;
+
+impl Body for Cone {
+    fn flat_normal(&self, dir: DVec3, _: VertexId) -> Option<DVec3> {
+        (dir.y < 0.0).then_some(DVec3::NEG_Y)
+    }
+
+    fn rulings(&self, _: DVec3, _: VertexId) -> impl Iterator<Item = Ruling> {
+        let slope = self.slope();
+        std::iter::once(Ruling {
+            axis: DVec3::Y,
+            sine: slope / slope.hypot(1.0),
+        })
+    }
+
+    fn piece(&self, dir: DVec3, _: VertexId, border: f64, _: &mut Vec<(DVec3, VertexId)>) -> Piece {
+        let (half_height, radius) = (self.half_height(), self.rim_radius());
+        let slope = self.slope();
+        let (sine, cosine) = (slope / slope.hypot(1.0), 1.0 / slope.hypot(1.0));
+        if -dir.y >= cosine * dir.x.hypot(dir.z) + sine * dir.y {
+            let offset = half_height + border;
+            return Piece::Flat(FlatSide {
+                normal: DVec3::NEG_Y,
+                offset,
+                outline: Outline::Disc {
+                    center: DVec3::NEG_Y * offset,
+                    radius,
+                },
+            });
+        }
+        let around = DVec3::new(dir.x, 0.0, dir.z).normalize_or(DVec3::X);
+        let moved = (around * cosine + DVec3::Y * sine) * border;
+        let rim = around * radius - DVec3::Y * half_height;
+        Piece::Line(Generator {
+            ends: [rim + moved, DVec3::Y * half_height + moved],
+            surface: RuledSurface {
+                origin: DVec3::ZERO,
+                axis: DVec3::Y,
+                radius: 0.5 * radius + border / cosine,
+                slope: -slope,
+            },
+            ball: TangentBall {
+                growth: [2.0 * half_height / (1.0 + sine), radius / cosine],
+                most: f64::INFINITY,
+            },
+        })
+    }
+}

@@ -1,0 +1,157 @@
+//! Which places of a patch become contacts.
+
+use glam::{DVec2, DVec3};
+
+use super::patch::{ContactPlace, Patch};
+use crate::manifold::{Contacts, MAX_POINTS};
+use crate::pose::RelativePose;
+use crate::query::Feature;
+use crate::simd::f32x4;
+use crate::support::FaceId;
+use crate::tolerance::SAME_GAP;
+use crate::tuning::SAME_POINT;
+
+/// Up to four contacts of a patch, the deepest first: those nearer than `max_distance`, spread out, then the
+/// nearest of the others. `on_1` is the point of shape 1 where a query found the shapes `least` apart, with
+/// their borders; it becomes a contact if the patch has none as deep. `scale` is the radius of the smaller
+/// shape.
+pub fn contacts(
+    patch: &Patch,
+    pose: &RelativePose,
+    (on_1, least): (DVec3, f64),
+    max_distance: f64,
+    scale: f64,
+) -> Contacts {
+    let mut chosen = Chosen {
+        same: f64::from(SAME_POINT) * scale,
+        normal: patch.normal(),
+        places: [None; MAX_POINTS],
+        count: 0,
+    };
+    let witness = ContactPlace {
+        on_1,
+        on_2: on_1 + patch.normal() * least,
+        distance: least,
+        features: [Feature::Face(FaceId::default()); 2],
+    };
+    let as_deep = |place: &&ContactPlace| place.distance <= least + SAME_GAP * scale;
+    chosen.push(patch.deepest().filter(as_deep).unwrap_or(&witness));
+    chosen.spread(&patch.places, max_distance);
+    chosen.fill(&patch.places);
+    chosen.contacts(pose, least)
+}
+
+struct Chosen {
+    same: f64,
+    normal: DVec3,
+    places: [Option<ContactPlace>; MAX_POINTS],
+    count: usize,
+}
+
+impl Chosen {
+    fn push(&mut self, place: &ContactPlace) {
+        if self.count < MAX_POINTS {
+            self.places[self.count] = Some(*place);
+            self.count += 1;
+        }
+    }
+
+    fn is_new(&self, place: &ContactPlace) -> bool {
+        let is_there = |other: &ContactPlace| {
+            let way = place.on_1 - other.on_1;
+            way.reject_from_normalized(self.normal).length() <= self.same
+        };
+        !self.places.iter().flatten().any(is_there)
+    }
+
+    /// Those that span a large area with the first one: the farthest from it, and the farthest on both sides
+    /// of the line through both, or beyond the triangle.
+    fn spread(&mut self, places: &[ContactPlace], max_distance: f64) {
+        let Some(first) = self.places[0] else { return };
+        let u = self.normal.any_orthonormal_vector();
+        let v = self.normal.cross(u);
+        let at = |place: &ContactPlace| {
+            let way = place.on_1 - first.on_1;
+            DVec2::new(way.dot(u), way.dot(v))
+        };
+        let near = |place: &&ContactPlace| place.distance <= max_distance;
+        let farthest = |least: f64, measure: &dyn Fn(DVec2) -> f64| {
+            let mut best = (least, None);
+            for place in places.iter().filter(near) {
+                let value = measure(at(place));
+                if value > best.0 {
+                    best = (value, Some(place));
+                }
+            }
+            best.1
+        };
+        let Some(far) = farthest(self.same * self.same, &|p| p.length_squared()) else {
+            return;
+        };
+        let line = at(far);
+        let least = self.same * line.length();
+        let left = farthest(least, &|p| line.perp_dot(p));
+        let right = farthest(least, &|p| -line.perp_dot(p));
+        self.push(far);
+        match (left, right) {
+            (Some(left), Some(right)) => {
+                self.push(left);
+                self.push(right);
+            }
+            (Some(side), None) | (None, Some(side)) => {
+                self.push(side);
+                let apex = at(side);
+                let turn = line.perp_dot(apex).signum();
+                let beyond = |p: DVec2| {
+                    let first_edge = (p - line).perp_dot(apex - line) * turn;
+                    let second_edge = p.perp_dot(-apex) * turn;
+                    first_edge.max(second_edge)
+                };
+                if let Some(last) = farthest(least, &beyond)
+                    && self.is_new(last)
+                {
+                    self.push(last);
+                }
+            }
+            (None, None) => {}
+        }
+    }
+
+    /// The nearest of those that are left, while there is room.
+    fn fill(&mut self, places: &[ContactPlace]) {
+        while self.count < MAX_POINTS {
+            let left = places.iter().filter(|place| self.is_new(place));
+            let Some(next) = left.min_by(|a, b| a.distance.total_cmp(&b.distance)) else {
+                return;
+            };
+            self.push(&next.clone());
+        }
+    }
+
+    fn contacts(&self, pose: &RelativePose, least: f64) -> Contacts {
+        let place = |i: usize| {
+            self.places[i].or(self.places[0]).unwrap_or(ContactPlace {
+                on_1: DVec3::ZERO,
+                on_2: DVec3::ZERO,
+                distance: 0.0,
+                features: [Feature::Face(FaceId::default()); 2],
+            })
+        };
+        let places = [0, 1, 2, 3].map(place);
+        let row = |of: &dyn Fn(&ContactPlace) -> f64| {
+            let [a, b, c, d] = &places;
+            f32x4::new([of(a) as f32, of(b) as f32, of(c) as f32, of(d) as f32])
+        };
+        let on_2 = places.map(|place| pose.point_to_2(place.on_2));
+        let points = |points: [DVec3; MAX_POINTS]| {
+            [0, 1, 2].map(|axis| f32x4::new(points.map(|p| p[axis] as f32)))
+        };
+        Contacts {
+            on_1: points(places.map(|place| place.on_1)),
+            on_2: points(on_2),
+            distance: row(&|place| place.distance.max(least)),
+            features: places.map(|place| place.features),
+            len: self.count,
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Discs on polygons and on discs.
+
+use glam::DVec3;
+
+use super::outline::circle_crossings;
+use super::patch::{Patch, PiecePoint};
+use super::piece::{FlatSide, Outline, Piece, across};
+use super::place::Spot;
+use crate::tolerance::{LEVEL, ON_OUTLINE};
+use crate::tuning::SMALL_SHIFT;
+
+impl Patch {
+    /// The direction in the plane of a flat side in which its contacts are deepest, and how much it
+    /// leans over the other one.
+    fn lean(&self, side: usize, flat: &FlatSide) -> Option<DVec3> {
+        let Piece::Flat(other) = &self.pieces[1 - side] else {
+            return None;
+        };
+        let steepest = other.normal / other.normal.dot(self.normal());
+        let gradient = if side == 0 { -steepest } else { steepest };
+        let in_plane = -gradient.reject_from_normalized(flat.normal);
+        (in_plane.length() > LEVEL).then(|| in_plane.normalize())
+    }
+
+    /// A disc on a polygon: the corners of a square in it, or what of it is over the polygon. The square
+    /// lies still in the frame of the polygon, unless the disc leans: then a corner is the deepest point.
+    pub(super) fn add_disc(
+        &mut self,
+        side: usize,
+        flat: &FlatSide,
+        (center, radius): (DVec3, f64),
+        with_corners: bool,
+    ) {
+        let still = across(self.reference(1 - side), flat.normal);
+        let u = self.lean(side, flat).or(still);
+        let u = u.unwrap_or_else(|| flat.normal.any_orthonormal_vector());
+        let v = flat.normal.cross(u);
+        let rim = |sector: usize| {
+            let angle = std::f64::consts::FRAC_PI_4 * sector as f64;
+            center + (u * angle.cos() + v * angle.sin()) * radius
+        };
+        let before = self.places.len();
+        let spots = |spot| {
+            let mut spots = [Spot::Inside; 2];
+            spots[side] = spot;
+            spots
+        };
+        let push_sector = |patch: &mut Self, sector: usize| {
+            patch.push_over(
+                side,
+                PiecePoint {
+                    at: rim(sector),
+                    spots: spots(Spot::Arc(sector)),
+                },
+            );
+        };
+        for sector in [0, 2, 4, 6] {
+            push_sector(self, sector);
+        }
+        let is_whole = self.places.len() == before + 4
+            && [1, 3, 5, 7]
+                .iter()
+                .all(|&sector| self.height_over(1 - side, rim(sector)).is_some());
+        if is_whole || !with_corners {
+            return;
+        }
+        for sector in [1, 3, 5, 7] {
+            push_sector(self, sector);
+        }
+        self.add_polygon_over_disc(1 - side, center, radius);
+    }
+
+    /// The corners of a polygon over a disc, and where its sides cross the circle.
+    fn add_polygon_over_disc(&mut self, side: usize, center: DVec3, radius: f64) {
+        let count = self.corners[side].len();
+        for i in 0..count {
+            let (from, id) = self.corners[side][i];
+            let (to, _) = self.corners[side][(i + 1) % count];
+            let mut spots = [Spot::Inside; 2];
+            spots[side] = Spot::Corner(id);
+            self.push_over(side, PiecePoint { at: from, spots });
+            let Some(disc) = self.flat(1 - side) else {
+                return;
+            };
+            let [a, b] = [from, to].map(|p| disc.project(p));
+            let Some(shares) = circle_crossings(a - center, b - a, radius) else {
+                continue;
+            };
+            for (number, share) in shares.into_iter().enumerate() {
+                if (0.0..=1.0).contains(&share) {
+                    spots[side] = Spot::Side(id);
+                    spots[1 - side] = Spot::Crossing(number);
+                    let at = from.lerp(to, share);
+                    self.push_over(side, PiecePoint { at, spots });
+                }
+            }
+        }
+    }
+
+    /// Two discs: a square in the smaller one if that is inside of the other, or the ends of the lens.
+    pub(super) fn add_two_discs(&mut self, flats: [&FlatSide; 2], circles: [(DVec3, f64); 2]) {
+        let [(c1, r1), (c2, r2)] = circles;
+        let smaller = usize::from(r2 < r1);
+        let least = r1.min(r2);
+        let (m1, offset) = (flats[0].normal, c2 - c1);
+        let across = offset - self.normal() * (m1.dot(offset) / m1.dot(self.normal()));
+        let distance = across.length();
+        if distance + least <= r1.max(r2) {
+            self.add_disc(smaller, flats[smaller], circles[smaller], false);
+            return;
+        }
+        // The circle inside of the lens.
+        let inner = 0.5 * (r1 + r2 - distance);
+        if inner >= (1.0 - SMALL_SHIFT) * least {
+            let way = across / distance;
+            let middle = c1 + way * (r1 - inner);
+            self.add_disc(0, flats[0], (middle, inner), false);
+        } else if inner > 0.0 {
+            self.add_lens(flats, circles, across / distance, distance);
+        }
+        // Where the discs lean, the deepest point may be on either rim.
+        for side in 0..2 {
+            if let Some(down) = self.lean(side, flats[side]) {
+                let (center, radius) = circles[side];
+                let mut spots = [Spot::Inside; 2];
+                spots[side] = Spot::Arc(0);
+                self.push_over(
+                    side,
+                    PiecePoint {
+                        at: center + down * radius,
+                        spots,
+                    },
+                );
+            }
+        }
+    }
+
+    /// The two points where circles cross, and the middles of the arcs between these.
+    fn add_lens(
+        &mut self,
+        flats: [&FlatSide; 2],
+        [(c1, r1), (c2, r2)]: [(DVec3, f64); 2],
+        way: DVec3,
+        distance: f64,
+    ) {
+        let [u1, u2] =
+            flats.map(|flat| way.reject_from_normalized(flat.normal).normalize_or_zero());
+        let along = 0.5 * (distance + (r1 * r1 - r2 * r2) / distance);
+        let half_chord = (r1 * r1 - along * along).max(0.0).sqrt();
+        let beside = flats[0].normal.cross(u1);
+        // A hair inside, so that rounding does not put them outside of either disc.
+        let hair = 1.0 - ON_OUTLINE;
+        for (number, sign) in [-1.0, 1.0].into_iter().enumerate() {
+            let at = c1 + (u1 * along + beside * (sign * half_chord)) * hair;
+            let spots = [Spot::Crossing(number); 2];
+            self.push_near_rim(at, spots);
+        }
+        self.push_over(
+            0,
+            PiecePoint {
+                at: c1 + u1 * r1,
+                spots: [Spot::Arc(0), Spot::Inside],
+            },
+        );
+        self.push_over(
+            1,
+            PiecePoint {
+                at: c2 - u2 * r2,
+                spots: [Spot::Inside, Spot::Arc(0)],
+            },
+        );
+    }
+
+    /// A place at the crossing of two circles, in the plane of the first one. Seen along a normal that leans,
+    /// the second circle is a little narrower.
+    fn push_near_rim(&mut self, at: DVec3, spots: [Spot; 2]) {
+        let Some(second) = self.flat(1) else { return };
+        let Outline::Disc { center, radius } = second.side.outline else {
+            return;
+        };
+        let over = second.project(at) - center;
+        let excess = over.length() / radius;
+        let (at, side) = if excess > 1.0 {
+            (center + over / excess, 1)
+        } else {
+            (at, 0)
+        };
+        self.push_over(side, PiecePoint { at, spots });
+    }
+}

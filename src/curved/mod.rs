@@ -1,0 +1,31 @@
+//! Pairs with a cylinder or a cone: how far they are apart or how deep they overlap, and the contact patch.
+//!
+//! A curved surface has no vertices that a search could end at. But where two shapes are nearest or
+//! overlap least, the normal mostly solves a few equations: it is that of a flat side, it is square to
+//! an edge, or it has a fixed angle to an axis ([`stationary`]). One such normal and the patch along it
+//! prove each other: the normal's support planes bound the signed distance from below, and the narrowest gap
+//! of the patch bounds it from above ([`certificate`]). GJK and EPA only find the way to it, and answer
+//! where no such normal is found ([`search`]).
+//!
+//! A new convex shape needs a [`Body`]: its support mapping, and the pieces that its surface consists of.
+
+mod body;
+mod certificate;
+mod cone;
+mod contacts;
+mod cylinder;
+mod discs;
+mod lines;
+mod outline;
+mod patch;
+mod piece;
+mod place;
+mod polytope;
+mod query;
+mod search;
+mod stationary;
+
+pub use body::Body;
+pub use contacts::contacts;
+pub use patch::{ContactPlace, Patch};
+pub use query::{CurvedAnswer, CurvedQuery, CurvedScratch, Hint};

@@ -1,0 +1,101 @@
+//! Flat sides seen along the contact normal: what is over them, and where lines cross their outlines.
+
+use glam::DVec3;
+
+use super::piece::{FlatSide, Outline};
+use crate::support::VertexId;
+use crate::tolerance::ON_OUTLINE;
+
+/// A flat side, and the corners of its outline if that is a polygon.
+#[derive(Clone, Copy)]
+pub(super) struct Flat<'a> {
+    pub side: &'a FlatSide,
+    pub corners: &'a [(DVec3, VertexId)],
+    /// The contact normal.
+    pub along: DVec3,
+}
+
+impl Flat<'_> {
+    /// How far along the contact normal the plane is from a point.
+    pub fn height(&self, p: DVec3) -> f64 {
+        (self.side.offset - self.side.normal.dot(p)) / self.side.normal.dot(self.along)
+    }
+
+    /// A point moved into the plane along the contact normal.
+    pub fn project(&self, p: DVec3) -> DVec3 {
+        p + self.along * self.height(p)
+    }
+
+    /// Whether a point is over the side, up to rounding.
+    pub fn is_under(&self, p: DVec3) -> bool {
+        self.inset(p).is_some_and(|inset| inset >= 0.0)
+    }
+
+    /// How far a point, moved into the plane, is inside of the outline; slightly more than none where
+    /// rounding may have moved it out. `None` outside.
+    pub fn inset(&self, p: DVec3) -> Option<f64> {
+        let p = self.project(p);
+        let inset = match self.side.outline {
+            Outline::Disc { center, radius } => radius * (1.0 + ON_OUTLINE) - p.distance(center),
+            Outline::Polygon => {
+                let mut least = f64::INFINITY;
+                for ([from, inward], length) in self.sides() {
+                    let slack = ON_OUTLINE * (length + (p - from).length());
+                    least = least.min(inward.dot(p - from) + slack);
+                }
+                least
+            }
+        };
+        (inset >= 0.0).then_some(inset)
+    }
+
+    /// A corner and the inward unit vector of each side, and its length.
+    fn sides(&self) -> impl Iterator<Item = ([DVec3; 2], f64)> {
+        let count = self.corners.len();
+        (0..count).filter_map(move |i| {
+            let (from, to) = (self.corners[i].0, self.corners[(i + 1) % count].0);
+            let inward = self.side.normal.cross(to - from);
+            let length = inward.length();
+            (length > 0.0).then(|| ([from, inward / length], length))
+        })
+    }
+
+    /// The shares of the way from `a` to `b`, moved into the plane, between which it is inside.
+    pub fn clip(&self, [a, b]: [DVec3; 2]) -> Option<[f64; 2]> {
+        let [a, b] = [a, b].map(|p| self.project(p));
+        let along = b - a;
+        let (mut low, mut high) = (0.0_f64, 1.0_f64);
+        match self.side.outline {
+            Outline::Disc { center, radius } => {
+                let [enter, leave] = circle_crossings(a - center, along, radius)?;
+                (low, high) = (low.max(enter), high.min(leave));
+            }
+            Outline::Polygon => {
+                for ([from, inward], length) in self.sides() {
+                    let slack = ON_OUTLINE * (length + (a - from).length());
+                    let (height, rise) = (inward.dot(a - from) + slack, inward.dot(along));
+                    let share = -height / rise;
+                    if rise > 0.0 {
+                        low = low.max(share);
+                    } else if rise < 0.0 {
+                        high = high.min(share);
+                    } else if height < 0.0 {
+                        return None;
+                    }
+                }
+            }
+        }
+        (low <= high).then_some([low, high])
+    }
+}
+
+/// The shares of `along`, from a point that is seen from the centre, at which a circle is crossed.
+pub(super) fn circle_crossings(from: DVec3, along: DVec3, radius: f64) -> Option<[f64; 2]> {
+    let (a, b) = (along.length_squared(), from.dot(along));
+    let c = from.length_squared() - radius * radius;
+    let discriminant = b * b - a * c;
+    (a > 0.0 && discriminant >= 0.0).then(|| {
+        let root = discriminant.sqrt();
+        [(-b - root) / a, (-b + root) / a]
+    })
+}

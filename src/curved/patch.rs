@@ -1,0 +1,258 @@
+//! The contact patch: where two pieces of surface are over each other along a normal.
+
+use std::ops::RangeInclusive;
+
+use glam::DVec3;
+
+use super::body::Body;
+use super::lines::exit;
+use super::outline::Flat;
+use super::piece::{Outline, Piece};
+use super::place::Spot;
+use crate::support::{Cso, CsoVertex, VertexId};
+use crate::tolerance::{ON_OUTLINE, SAME_GAP};
+
+pub use super::place::ContactPlace;
+
+/// The pieces of both surfaces along a normal, and places over both. In frame 1.
+#[derive(Clone, Debug)]
+pub struct Patch {
+    pub(super) pieces: [Piece; 2],
+    pub(super) corners: [Vec<(DVec3, VertexId)>; 2],
+    pub(super) places: Vec<ContactPlace>,
+    normal: DVec3,
+    border_radii: [f64; 2],
+    /// Fixed directions in the planes of flat sides, each in its own shape's frame.
+    references: [DVec3; 2],
+    /// A length that rounding is relative to.
+    size: f64,
+}
+
+impl Default for Patch {
+    fn default() -> Self {
+        Self {
+            pieces: [Piece::Point(DVec3::ZERO); 2],
+            corners: [Vec::new(), Vec::new()],
+            places: Vec::new(),
+            normal: DVec3::Z,
+            border_radii: [0.0; 2],
+            references: [DVec3::X; 2],
+            size: 0.0,
+        }
+    }
+}
+
+/// A point of one of the two pieces, and what it is of both.
+#[derive(Clone, Copy)]
+pub(super) struct PiecePoint {
+    pub at: DVec3,
+    pub spots: [Spot; 2],
+}
+
+impl Patch {
+    /// Finds the places along `normal`, along which `extreme` is extreme. Of rounded shapes it is the cores'
+    /// place that is deepest, moved along the normal; the others lie on pieces that are moved along their own.
+    pub fn find<A: Body, B: Body>(
+        &mut self,
+        cso: &Cso<'_, A, B>,
+        normal: DVec3,
+        extreme: &CsoVertex,
+        border_radii: [f64; 2],
+    ) {
+        self.find_between(cso, normal, extreme, [0.0; 2]);
+        if border_radii == [0.0; 2] {
+            return;
+        }
+        let separation = -normal.dot(extreme.w);
+        let limit = separation + SAME_GAP * cso.min_radius();
+        let deepest = self
+            .deepest()
+            .filter(|place| place.distance <= limit)
+            .copied();
+        self.find_between(cso, normal, extreme, border_radii);
+        if let Some(core) = deepest {
+            self.places.push(ContactPlace {
+                on_1: core.on_1 + normal * border_radii[0],
+                on_2: core.on_2 - normal * border_radii[1],
+                distance: core.distance - self.borders(),
+                features: [Spot::Extreme(VertexId::default()).feature(); 2],
+            });
+        }
+    }
+
+    fn find_between<A: Body, B: Body>(
+        &mut self,
+        cso: &Cso<'_, A, B>,
+        normal: DVec3,
+        extreme: &CsoVertex,
+        border_radii: [f64; 2],
+    ) {
+        let [corners_1, corners_2] = &mut self.corners;
+        corners_1.clear();
+        corners_2.clear();
+        let outward_2 = -cso.pose.direction_to_2(normal);
+        let [id_1, id_2] = extreme.ids;
+        let piece_1 = cso.shape_1.piece(normal, id_1, border_radii[0], corners_1);
+        let piece_2 = cso
+            .shape_2
+            .piece(outward_2, id_2, border_radii[1], corners_2);
+        let reference = |piece: &Piece| match piece {
+            Piece::Flat(flat) => flat.normal.any_orthonormal_vector(),
+            _ => DVec3::ZERO,
+        };
+        self.references = [
+            reference(&piece_1),
+            cso.pose.direction_to_1(reference(&piece_2)),
+        ];
+        for (corner, _) in &mut *corners_2 {
+            *corner = cso.pose.point_to_1(*corner);
+        }
+        self.pieces = [piece_1, piece_2.to_frame_1(cso.pose)];
+        self.normal = normal;
+        self.border_radii = border_radii;
+        self.size = cso.size() + cso.center().length();
+        self.places.clear();
+        self.add_common();
+        self.add_extremes(extreme);
+    }
+
+    /// Drops the places that are not within these distances.
+    pub fn retain(&mut self, range: RangeInclusive<f64>) {
+        self.places.retain(|place| range.contains(&place.distance));
+    }
+
+    /// The point of the first shape where the gap is narrowest, and its width.
+    pub fn deepest_point(&self) -> Option<(DVec3, f64)> {
+        self.deepest().map(|place| (place.on_1, place.distance))
+    }
+
+    /// A direction in the plane of a flat side that lies still in the frame of its shape.
+    pub(super) fn reference(&self, side: usize) -> DVec3 {
+        self.references[side]
+    }
+
+    /// A length that rounding is relative to.
+    pub(super) fn size(&self) -> f64 {
+        self.size
+    }
+
+    pub(super) fn normal(&self) -> DVec3 {
+        self.normal
+    }
+
+    pub(super) fn border(&self, side: usize) -> f64 {
+        self.border_radii[side]
+    }
+
+    /// The widths of both borders.
+    pub(super) fn borders(&self) -> f64 {
+        self.border_radii[0] + self.border_radii[1]
+    }
+
+    pub(super) fn flat(&self, side: usize) -> Option<Flat<'_>> {
+        match &self.pieces[side] {
+            Piece::Flat(flat) => Some(Flat {
+                side: flat,
+                corners: &self.corners[side],
+                along: self.normal,
+            }),
+            _ => None,
+        }
+    }
+
+    /// Where the pieces are over each other as a whole.
+    fn add_common(&mut self) {
+        match self.pieces {
+            [Piece::Flat(a), Piece::Flat(b)] => {
+                let circles = [&a, &b].map(|flat| match flat.outline {
+                    Outline::Disc { center, radius } => Some((center, radius)),
+                    Outline::Polygon => None,
+                });
+                match circles {
+                    [Some(first), Some(second)] => self.add_two_discs([&a, &b], [first, second]),
+                    [Some(circle), None] => self.add_disc(0, &a, circle, true),
+                    [None, Some(circle)] => self.add_disc(1, &b, circle, true),
+                    [None, None] => {}
+                }
+            }
+            [Piece::Flat(_), Piece::Line(line)] => self.add_line(1, &line),
+            [Piece::Line(line), Piece::Flat(_)] => self.add_line(0, &line),
+            [Piece::Line(a), Piece::Line(b)] => self.add_two_lines([&a, &b]),
+            _ => {}
+        }
+    }
+
+    /// Extreme points of the cores, moved along the normal, if they are over the other piece.
+    fn add_extremes(&mut self, extreme: &CsoVertex) {
+        let cores = [extreme.on_1, extreme.on_2()];
+        for side in 0..2 {
+            let spot = Spot::Extreme(extreme.ids[side]);
+            let mut spots = [Spot::Inside; 2];
+            spots[side] = spot;
+            let outward = if side == 0 { 1.0 } else { -1.0 };
+            let mine = outward * self.border_radii[side];
+            let candidate = PiecePoint {
+                at: cores[side],
+                spots,
+            };
+            if let Some(other) = self.height_over(1 - side, cores[side]) {
+                let heights = if side == 0 {
+                    [mine, other]
+                } else {
+                    [other, mine]
+                };
+                self.push(candidate, heights);
+            }
+        }
+    }
+
+    /// How far along the normal a piece is from a point, if it is over the piece.
+    pub(super) fn height_over(&self, side: usize, p: DVec3) -> Option<f64> {
+        match &self.pieces[side] {
+            Piece::Flat(_) => {
+                let flat = self.flat(side)?;
+                flat.is_under(p).then(|| flat.height(p))
+            }
+            Piece::Line(line) => {
+                let outward = if side == 0 { self.normal } else { -self.normal };
+                let height = exit(&line.surface, line, p, outward)?;
+                let at = p + outward * height;
+                let [low, high] = line.ends.map(|end| line.surface.axis.dot(end - at));
+                let is_between = low.min(high) <= ON_OUTLINE * self.size
+                    && low.max(high) >= -ON_OUTLINE * self.size;
+                is_between.then(|| self.normal.dot(at - p))
+            }
+            Piece::Point(core) => {
+                let height = self.normal.dot(*core - p);
+                let aside = (*core - p - self.normal * height).length();
+                let outward = if side == 0 { 1.0 } else { -1.0 };
+                (aside <= ON_OUTLINE * self.size)
+                    .then(|| height + outward * self.border_radii[side])
+            }
+        }
+    }
+
+    pub(super) fn push(&mut self, candidate: PiecePoint, heights: [f64; 2]) {
+        let place = ContactPlace {
+            on_1: candidate.at + self.normal * heights[0],
+            on_2: candidate.at + self.normal * heights[1],
+            distance: heights[1] - heights[0],
+            features: candidate.spots.map(Spot::feature),
+        };
+        if place.distance.is_finite() {
+            self.places.push(place);
+        }
+    }
+
+    /// A candidate on a piece, if it is over the other one.
+    pub(super) fn push_over(&mut self, side: usize, candidate: PiecePoint) {
+        if let Some(height) = self.height_over(1 - side, candidate.at) {
+            let heights = if side == 0 {
+                [0.0, height]
+            } else {
+                [height, 0.0]
+            };
+            self.push(candidate, heights);
+        }
+    }
+}

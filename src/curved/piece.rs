@@ -1,0 +1,178 @@
+//! Pieces of surface: flat sides, lines of ruled surfaces, points.
+
+use glam::DVec3;
+
+use crate::pose::RelativePose;
+use crate::tolerance::SAME_NORMAL;
+
+/// A piece of the surface of a shape, moved outwards by the width of its border.
+#[derive(Clone, Copy, Debug)]
+pub enum Piece {
+    /// A flat side.
+    Flat(FlatSide),
+    /// A line of a ruled surface, or an edge with a border.
+    Line(Generator),
+    /// A point, moved along the contact normal.
+    Point(DVec3),
+}
+
+/// A flat side of a shape.
+#[derive(Clone, Copy, Debug)]
+pub struct FlatSide {
+    /// Its outward unit normal.
+    pub normal: DVec3,
+    /// `normal · p` of its points.
+    pub offset: f64,
+    /// What bounds it.
+    pub outline: Outline,
+}
+
+/// The outline of a flat side.
+#[derive(Clone, Copy, Debug)]
+pub enum Outline {
+    /// A circle.
+    Disc {
+        /// Its centre.
+        center: DVec3,
+        /// Its radius.
+        radius: f64,
+    },
+    /// A polygon whose corners are kept beside the piece.
+    Polygon,
+}
+
+/// The line of a ruled surface that is extreme along the contact normal.
+#[derive(Clone, Copy, Debug)]
+pub struct Generator {
+    /// Its ends.
+    pub ends: [DVec3; 2],
+    /// The surface that it is on.
+    pub surface: RuledSurface,
+    /// How large balls inside the core are that touch it there.
+    pub ball: TangentBall,
+}
+
+/// How the radius of the largest ball inside of a core that touches a line of its surface varies along it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct TangentBall {
+    /// How it would grow from either end to the other.
+    pub growth: [f64; 2],
+    /// It is no more.
+    pub most: f64,
+}
+
+impl TangentBall {
+    /// The radius at a share of the way from the first end to the second.
+    pub fn radius(&self, share: f64) -> f64 {
+        let [from_first, from_second] = self.growth;
+        (from_first * share)
+            .min(from_second * (1.0 - share))
+            .min(self.most)
+    }
+}
+
+/// The side of a cylinder or a cone, without its ends.
+#[derive(Clone, Copy, Debug)]
+pub struct RuledSurface {
+    /// A point of the axis.
+    pub origin: DVec3,
+    /// The unit vector along the axis.
+    pub axis: DVec3,
+    /// The radius at the origin.
+    pub radius: f64,
+    /// How much the radius grows along the axis.
+    pub slope: f64,
+}
+
+/// The unit vector along the part of a unit vector that is square to another one; `None` where both are
+/// parallel up to rounding.
+pub(super) fn across(dir: DVec3, axis: DVec3) -> Option<DVec3> {
+    let part = dir.reject_from_normalized(axis);
+    let length = part.length();
+    (length > SAME_NORMAL).then(|| part / length)
+}
+
+impl Piece {
+    /// From frame 2 to frame 1.
+    pub fn to_frame_1(self, pose: &RelativePose) -> Self {
+        match self {
+            Self::Flat(flat) => {
+                let normal = pose.direction_to_1(flat.normal);
+                let outline = match flat.outline {
+                    Outline::Disc { center, radius } => Outline::Disc {
+                        center: pose.point_to_1(center),
+                        radius,
+                    },
+                    Outline::Polygon => Outline::Polygon,
+                };
+                Self::Flat(FlatSide {
+                    normal,
+                    offset: flat.offset + normal.dot(pose.point_to_1(DVec3::ZERO)),
+                    outline,
+                })
+            }
+            Self::Line(line) => Self::Line(Generator {
+                ends: line.ends.map(|p| pose.point_to_1(p)),
+                surface: RuledSurface {
+                    origin: pose.point_to_1(line.surface.origin),
+                    axis: pose.direction_to_1(line.surface.axis),
+                    ..line.surface
+                },
+                ..line
+            }),
+            Self::Point(p) => Self::Point(pose.point_to_1(p)),
+        }
+    }
+}
+
+impl RuledSurface {
+    /// The sine of the angle between the outward normals and the plane across the axis.
+    pub fn sine(&self) -> f64 {
+        -self.slope / self.slope.hypot(1.0)
+    }
+
+    /// The radius at a point's place along the axis.
+    pub fn radius_at(&self, p: DVec3) -> f64 {
+        self.radius + self.slope * self.axis.dot(p - self.origin)
+    }
+
+    /// The outward normal at a point.
+    pub fn normal_at(&self, p: DVec3) -> DVec3 {
+        let across = (p - self.origin).reject_from_normalized(self.axis);
+        let around = across.normalize_or_zero();
+        (around - self.axis * self.slope) / self.slope.hypot(1.0)
+    }
+
+    /// How far along the unit vector `dir` the line through `p` leaves the surface, of two places the one
+    /// that is nearer to the height `about`.
+    pub fn exit(&self, p: DVec3, dir: DVec3, about: f64) -> Option<f64> {
+        let from = p - self.origin;
+        let (height, rise) = (self.axis.dot(from), self.axis.dot(dir));
+        let (across, step) = (from - self.axis * height, dir - self.axis * rise);
+        let (radius, growth) = (self.radius + self.slope * height, self.slope * rise);
+        let a = step.length_squared() - growth * growth;
+        let b = step.dot(across) - radius * growth;
+        let c = across.length_squared() - radius * radius;
+        let discriminant = b * b - a * c;
+        if discriminant < 0.0 {
+            return None;
+        }
+        let root = discriminant.sqrt();
+        // Without cancellation (Press et al., Numerical Recipes, 5.6).
+        let q = -(b + root.copysign(b));
+        let nearer = |t: f64, u: f64| {
+            if (t - about).abs() <= (u - about).abs() {
+                t
+            } else {
+                u
+            }
+        };
+        let found = match (a != 0.0, q != 0.0) {
+            (true, true) => nearer(q / a, c / q),
+            (true, false) => 0.0,
+            (false, true) => c / q,
+            (false, false) => return None,
+        };
+        found.is_finite().then_some(found)
+    }
+}

@@ -1,0 +1,83 @@
+//! Polytopes as bodies: faces, edges, and the line or the point that a capsule or a ball is around.
+
+use glam::DVec3;
+
+use super::body::{Body, Ruling};
+use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall, across};
+use crate::support::{Polytope, VertexId};
+use crate::tuning::EDGE_ON;
+
+impl<P: Polytope> Body for P {
+    fn flat_normal(&self, dir: DVec3, vertex: VertexId) -> Option<DVec3> {
+        let normal = self.face_normal(self.face_at_vertex(vertex, dir));
+        (normal != DVec3::ZERO).then_some(normal)
+    }
+
+    fn rulings(&self, _: DVec3, vertex: VertexId) -> impl Iterator<Item = Ruling> {
+        let from = self.vertex(vertex);
+        self.neighbors(vertex).filter_map(move |to| {
+            let axis = (self.vertex(to) - from).try_normalize()?;
+            Some(Ruling { axis, sine: 0.0 })
+        })
+    }
+
+    fn piece(
+        &self,
+        dir: DVec3,
+        vertex: VertexId,
+        border: f64,
+        corners: &mut Vec<(DVec3, VertexId)>,
+    ) -> Piece {
+        let face = self.face_at_vertex(vertex, dir);
+        match self.face_len(face) {
+            0 | 1 => Piece::Point(self.vertex(vertex)),
+            2 => {
+                let ends = [0, 1].map(|i| self.vertex(self.face_vertex(face, i)));
+                line_piece(ends, dir, border).unwrap_or(Piece::Point(self.vertex(vertex)))
+            }
+            len => {
+                let normal = self.face_normal(face);
+                // A sliver has no normal, and a face seen edge-on is an edge.
+                if normal.dot(dir) <= EDGE_ON {
+                    return edge_piece(self, dir, vertex, border);
+                }
+                let moved = normal * border;
+                corners.extend((0..len).map(|i| {
+                    let corner = self.face_vertex(face, i);
+                    (self.vertex(corner) + moved, corner)
+                }));
+                Piece::Flat(FlatSide {
+                    normal,
+                    offset: self.face_offset(face) + border,
+                    outline: Outline::Polygon,
+                })
+            }
+        }
+    }
+}
+
+/// The edge at a vertex, extreme along `dir`, that is most across that.
+fn edge_piece(shape: &impl Polytope, dir: DVec3, vertex: VertexId, border: f64) -> Piece {
+    let from = shape.vertex(vertex);
+    let ends = shape.neighbors(vertex).map(|to| shape.vertex(to));
+    let slope = |to: &DVec3| (*to - from).normalize_or(dir).dot(dir).abs();
+    let across = ends.min_by(|a, b| slope(a).total_cmp(&slope(b)));
+    let line = across.and_then(|to| line_piece([from, to], dir, border));
+    line.unwrap_or(Piece::Point(from))
+}
+
+/// The line of a capsule's side that is extreme along `dir`.
+fn line_piece([a, b]: [DVec3; 2], dir: DVec3, border: f64) -> Option<Piece> {
+    let axis = (b - a).try_normalize()?;
+    let outward = across(dir.normalize(), axis)?;
+    Some(Piece::Line(Generator {
+        ends: [a, b].map(|end| end + outward * border),
+        surface: RuledSurface {
+            origin: a,
+            axis,
+            radius: border,
+            slope: 0.0,
+        },
+        ball: TangentBall::default(),
+    }))
+}

@@ -1,0 +1,189 @@
+//! The order of the stages, from a remembered normal to an answer that is proved.
+
+use std::ops::ControlFlow;
+
+use glam::DVec3;
+
+use super::body::Body;
+use super::patch::Patch;
+use super::stationary::{self, NormalSeparation};
+use crate::epa::EpaScratch;
+use crate::gjk::SeparatingAxis;
+use crate::stats::{Cost, Stage};
+use crate::support::{Cso, CsoVertex, VertexId};
+use crate::tolerance::DEPTH_GAP;
+use crate::tuning::TILT;
+
+/// Memory for queries.
+#[derive(Clone, Debug, Default)]
+pub struct CurvedScratch {
+    /// The contact patch of the last answer.
+    pub patch: Patch,
+    /// The expanding polytope.
+    pub epa: EpaScratch,
+}
+
+/// What is known of a pair from the frame before.
+#[derive(Clone, Copy, Debug)]
+pub enum Hint {
+    /// Nothing.
+    None,
+    /// The shapes were apart along this unit axis, at these vertices.
+    Apart(DVec3, [VertexId; 2]),
+    /// They were in contact along this unit normal. The last is whether their cores overlapped.
+    Contact(DVec3, bool),
+}
+
+/// The answer to a query about cores, in frame 1.
+#[derive(Clone, Copy, Debug)]
+pub enum CurvedAnswer {
+    /// The bounding spheres are farther apart than was asked about.
+    SpheresApart,
+    /// The cores are farther apart than was asked about.
+    Separated(SeparatingAxis),
+    /// The cores are this near, or overlap. The contact patch has the places.
+    Near {
+        /// Of the cores.
+        signed_distance: f64,
+        /// From shape 1 to shape 2.
+        normal: DVec3,
+        /// Where they are nearest or overlap most: on shape 1.
+        on_1: DVec3,
+    },
+}
+
+/// Finds a normal that separates more than the one at hand, or as much.
+type FindNormal<A, B> =
+    fn(&Cso<'_, A, B>, &NormalSeparation, &mut Cost) -> Option<NormalSeparation>;
+
+/// A query about two shapes, of which one is curved.
+pub struct CurvedQuery<'a, 'c, A, B> {
+    /// The pair without borders.
+    pub cso: &'a Cso<'c, A, B>,
+    /// The widths of the rounded borders.
+    pub border_radii: [f64; 2],
+    /// Answers beyond this distance of the cores are [`CurvedAnswer::Separated`].
+    pub max_distance: f64,
+    /// Memory to work in.
+    pub scratch: &'a mut CurvedScratch,
+    /// Filled in with what the query cost.
+    pub cost: &'a mut Cost,
+}
+
+impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
+    /// The answer, and the stage that found it. `None` if the pair is not finite or has no volume.
+    pub fn run(&mut self, hint: Hint) -> Option<(CurvedAnswer, Stage)> {
+        if self.cso.are_spheres_apart(self.max_distance) {
+            return Some((CurvedAnswer::SpheresApart, Stage::BoundingSpheres));
+        }
+        let (axis, ids, is_warm) = match hint {
+            Hint::None => {
+                let axis = self.cso.towards_origin();
+                (axis, self.cso.start_vertices(axis), false)
+            }
+            Hint::Apart(axis, [id_1, id_2]) => {
+                let ids = [
+                    self.cso.shape_1.clamp_vertex(id_1),
+                    self.cso.shape_2.clamp_vertex(id_2),
+                ];
+                (axis, ids, true)
+            }
+            Hint::Contact(normal, _) => (normal, self.cso.start_vertices(normal), true),
+        };
+        let axis = axis.normalize();
+        let start = CsoVertex {
+            ids,
+            ..CsoVertex::default()
+        };
+        let along_axis = NormalSeparation::along(self.cso, axis, &start, self.cost);
+        if along_axis.distance > self.max_distance {
+            return Some((apart(&along_axis), Stage::Axis));
+        }
+        let mut at = along_axis;
+        if !matches!(hint, Hint::Contact(..)) {
+            let aside = at.extreme.w - axis * axis.dot(at.extreme.w);
+            let tilted = (axis - aside.normalize_or_zero() * TILT).normalize();
+            at = at.or(NormalSeparation::along(
+                self.cso,
+                tilted,
+                &at.extreme,
+                self.cost,
+            ));
+            if at.distance > self.max_distance {
+                return Some((apart(&at), Stage::Axis));
+            }
+        }
+        let best = match self.stationary(&at) {
+            ControlFlow::Break(answer) => return Some((answer, Stage::Feature)),
+            ControlFlow::Continue(best) => best,
+        };
+        let is_deep = matches!(hint, Hint::Contact(_, true));
+        if !is_deep && let Some(found) = self.by_gjk(&at, is_warm) {
+            return Some(found);
+        }
+        let stage = if is_warm {
+            Stage::WarmEpa
+        } else {
+            Stage::ColdEpa
+        };
+        let answer = self.by_epa(best, is_deep)?;
+        Some((answer, stage))
+    }
+
+    /// An answer by the pieces of surface near a normal, or the best normal that was found.
+    pub(super) fn stationary(
+        &mut self,
+        at: &NormalSeparation,
+    ) -> ControlFlow<CurvedAnswer, NormalSeparation> {
+        let (cso, max) = (self.cso, self.max_distance);
+        let steps: [FindNormal<A, B>; 3] = [
+            stationary::flat,
+            stationary::ruled,
+            stationary::along_rulings,
+        ];
+        let mut best = *at;
+        for step in steps {
+            let Some(found) = step(cso, at, self.cost) else {
+                continue;
+            };
+            if found.distance > max {
+                return ControlFlow::Break(apart(&found));
+            }
+            // A worse one than is known cannot be proved.
+            if found.distance < best.distance - self.tolerance() {
+                continue;
+            }
+            best = found;
+            if let Some(answer) = self.prove(&found) {
+                return ControlFlow::Break(answer);
+            }
+        }
+        ControlFlow::Continue(best)
+    }
+
+    pub(super) fn tolerance(&self) -> f64 {
+        DEPTH_GAP * self.cso.min_radius()
+    }
+
+    /// The answer along a normal, if its patch proves it.
+    fn prove(&mut self, found: &NormalSeparation) -> Option<CurvedAnswer> {
+        let patch = &mut self.scratch.patch;
+        patch.find(self.cso, found.normal, &found.extreme, self.border_radii);
+        let tolerance = DEPTH_GAP * self.cso.min_radius();
+        let is_proved = patch.proves(self.cso, found.distance, tolerance);
+        let deepest = patch.deepest().filter(|_| is_proved)?;
+        Some(CurvedAnswer::Near {
+            signed_distance: found.distance,
+            normal: found.normal,
+            on_1: deepest.on_1,
+        })
+    }
+}
+
+pub(super) fn apart(found: &NormalSeparation) -> CurvedAnswer {
+    CurvedAnswer::Separated(SeparatingAxis {
+        axis: found.normal,
+        separation: found.distance,
+        ids: found.extreme.ids,
+    })
+}

@@ -1,0 +1,151 @@
+//! Searches by GJK and EPA: for the pieces of surface in contact, and for the answer where no piece gives it.
+
+use std::ops::ControlFlow;
+
+use glam::DVec3;
+
+use super::body::Body;
+use super::query::{CurvedAnswer, CurvedQuery, apart};
+use super::stationary::NormalSeparation;
+use crate::epa::{self, DepthSearch};
+use crate::gjk::{self, Outcome};
+use crate::simplex::Preferred;
+use crate::stats::Stage;
+use crate::support::{Cso, CsoVertex};
+use crate::tolerance::{FINE_GAP, SAME_GAP, WITNESS_GAP};
+use crate::tuning::COARSE_GAP;
+
+impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
+    /// Finds the way by a coarse search of the distance, and ends by a fine one where no piece answers. `None`
+    /// if the cores touch or overlap.
+    pub(super) fn by_gjk(
+        &mut self,
+        at: &NormalSeparation,
+        is_warm: bool,
+    ) -> Option<(CurvedAnswer, Stage)> {
+        let stage = if is_warm {
+            Stage::WarmGjk
+        } else {
+            Stage::ColdGjk
+        };
+        let size = self.cso.size();
+        let (mut start, mut count) = ([at.extreme; 3], 1);
+        for gap in [COARSE_GAP, FINE_GAP].map(|gap| gap * self.cso.min_radius()) {
+            let outcome = gjk::distance_within::<Preferred, _, _>(
+                self.cso,
+                &start[..count],
+                self.max_distance,
+                gap / size,
+                self.cost,
+            );
+            let closest = match outcome {
+                Outcome::Separated(axis) => return Some((CurvedAnswer::Separated(axis), stage)),
+                Outcome::Disjoint(closest) => closest,
+                Outcome::Unsure(_) | Outcome::Overlapping(_) => return None,
+            };
+            let near = NormalSeparation::along(self.cso, closest.normal, &at.extreme, self.cost);
+            if let ControlFlow::Break(answer) = self.stationary(&near) {
+                return Some((answer, stage));
+            }
+            let is_fine = gap < self.tolerance();
+            if is_fine && closest.distance - closest.lower_bound <= self.tolerance() {
+                let patch = &mut self.scratch.patch;
+                patch.find(self.cso, near.normal, &near.extreme, self.border_radii);
+                return Some((
+                    CurvedAnswer::Near {
+                        signed_distance: closest.distance,
+                        normal: closest.normal,
+                        on_1: closest.on_1 + closest.normal * self.border_radii[0],
+                    },
+                    stage,
+                ));
+            }
+            count = 0;
+            for (place, vertex) in start.iter_mut().zip(closest.simplex.vertices()) {
+                *place = *vertex;
+                count += 1;
+            }
+        }
+        None
+    }
+
+    /// Finds the way by a coarse search of the depth, unless `best` is from the frame before, and ends by a
+    /// fine one where no piece answers. That may only prove that there is no smaller depth than the best.
+    pub(super) fn by_epa(
+        &mut self,
+        mut best: NormalSeparation,
+        is_known: bool,
+    ) -> Option<CurvedAnswer> {
+        let mut on_1 = best.extreme.on_1;
+        let coarse = COARSE_GAP * self.cso.min_radius();
+        let tolerances = [coarse, self.tolerance()];
+        for tolerance in &tolerances[usize::from(is_known)..] {
+            let known = if *tolerance < coarse {
+                -best.distance
+            } else {
+                f64::INFINITY
+            };
+            let limits = [known, *tolerance];
+            let scratch = &mut self.scratch.epa;
+            match epa::penetration_within(self.cso, &[], limits, scratch, self.cost)? {
+                DepthSearch::NotBelow => return Some(self.along(&best, on_1)),
+                DepthSearch::Found(found) => {
+                    on_1 = found.on_1;
+                    let near =
+                        NormalSeparation::along(self.cso, found.normal, &best.extreme, self.cost);
+                    best = match self.stationary(&near) {
+                        ControlFlow::Break(answer) => return Some(answer),
+                        ControlFlow::Continue(found) => best.or(found),
+                    };
+                    if found.depth < 0.0 {
+                        let apart = self.by_gjk(&best, true).map(|(answer, _)| answer);
+                        return apart.or_else(|| Some(self.along(&best, on_1)));
+                    }
+                }
+            }
+        }
+        Some(self.along(&best, on_1))
+    }
+
+    /// The answer along a normal that is known to be the best one. Where no pieces are over each other, the
+    /// contact is at a point of the first core.
+    fn along(&mut self, best: &NormalSeparation, on_1: DVec3) -> CurvedAnswer {
+        if best.distance > self.max_distance {
+            return apart(best);
+        }
+        let patch = &mut self.scratch.patch;
+        patch.find(self.cso, best.normal, &best.extreme, self.border_radii);
+        let radius = self.cso.min_radius();
+        let limit = best.distance - patch.borders() + SAME_GAP * radius;
+        let on_1 = match patch.deepest_point() {
+            Some((on_1, distance)) if distance <= limit => on_1,
+            _ => self.witness(best).unwrap_or(on_1) + best.normal * self.border_radii[0],
+        };
+        CurvedAnswer::Near {
+            signed_distance: best.distance,
+            normal: best.normal,
+            on_1,
+        }
+    }
+
+    /// Where the first core is deepest along a normal: where it is nearest once the cores are moved apart.
+    fn witness(&mut self, best: &NormalSeparation) -> Option<DVec3> {
+        let radius = self.cso.min_radius();
+        let way = best.normal * (WITNESS_GAP * radius - best.distance);
+        let pose = self.cso.pose.moved(way);
+        let apart = Cso {
+            pose: &pose,
+            ..*self.cso
+        };
+        let start = CsoVertex {
+            w: best.extreme.w - way,
+            ..best.extreme
+        };
+        let gap = FINE_GAP * radius / apart.size();
+        let far = f64::INFINITY;
+        match gjk::distance_within::<Preferred, _, _>(&apart, &[start], far, gap, self.cost) {
+            Outcome::Disjoint(closest) | Outcome::Unsure(closest) => Some(closest.on_1),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! Normals along which two shapes may be nearest or overlap least, by the pieces of surface that meet.
+
+use glam::DVec3;
+
+use super::body::{Body, Ruling};
+use super::piece::across;
+use crate::stats::Cost;
+use crate::support::{Cso, CsoVertex};
+use crate::tolerance::{PARALLEL_AXES, SETTLED_ANGLE};
+use crate::tuning::FIRST_STEP;
+
+/// A normal, the vertex of the difference that is extreme along it, and how far apart the shapes are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct NormalSeparation {
+    pub normal: DVec3,
+    pub extreme: CsoVertex,
+    pub distance: f64,
+}
+
+impl NormalSeparation {
+    /// Along a unit vector; climbs start where they ended along another one.
+    pub fn along<A: Body, B: Body>(
+        cso: &Cso<'_, A, B>,
+        normal: DVec3,
+        near: &CsoVertex,
+        cost: &mut Cost,
+    ) -> Self {
+        let extreme = cso.support(normal, near.ids, cost);
+        Self {
+            normal,
+            extreme,
+            distance: -normal.dot(extreme.w),
+        }
+    }
+
+    pub fn or(self, other: Self) -> Self {
+        if other.distance > self.distance {
+            other
+        } else {
+            self
+        }
+    }
+}
+
+/// The normal of a flat side that separates most, beside a known normal.
+pub(super) fn flat<A: Body, B: Body>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+    cost: &mut Cost,
+) -> Option<NormalSeparation> {
+    let [id_1, id_2] = at.extreme.ids;
+    let outward_2 = -cso.pose.direction_to_2(at.normal);
+    let first = cso.shape_1.flat_normal(at.normal, id_1);
+    let second = cso.shape_2.flat_normal(outward_2, id_2);
+    let second = second.map(|normal| -cso.pose.direction_to_1(normal));
+    let normals = [first, second].into_iter().flatten();
+    normals
+        .map(|normal| NormalSeparation::along(cso, normal, &at.extreme, cost))
+        .reduce(NormalSeparation::or)
+}
+
+/// The normal that suits two rulings, one of each shape, and separates most.
+pub(super) fn ruled<A: Body, B: Body>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+    cost: &mut Cost,
+) -> Option<NormalSeparation> {
+    let mut best: Option<NormalSeparation> = None;
+    for first in cso.shape_1.rulings(at.normal, at.extreme.ids[0]) {
+        for second in rulings_2(cso, at) {
+            if let Some(normal) = suiting_both(&first, &second, at.normal) {
+                let found = NormalSeparation::along(cso, normal, &at.extreme, cost);
+                best = Some(best.map_or(found, |best| best.or(found)));
+            }
+        }
+    }
+    best
+}
+
+/// The rulings of shape 2 in frame 1, as the contact normal sees them.
+fn rulings_2<A: Body, B: Body>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+) -> impl Iterator<Item = Ruling> {
+    let outward_2 = -cso.pose.direction_to_2(at.normal);
+    let rulings = cso.shape_2.rulings(outward_2, at.extreme.ids[1]);
+    rulings.map(|ruling| Ruling {
+        axis: cso.pose.direction_to_1(ruling.axis),
+        sine: -ruling.sine,
+    })
+}
+
+/// The unit vector with given sines to two axes that is nearer to `about`.
+fn suiting_both(first: &Ruling, second: &Ruling, about: DVec3) -> Option<DVec3> {
+    let cross = first.axis.cross(second.axis);
+    let area = cross.length_squared();
+    if area < PARALLEL_AXES {
+        return None;
+    }
+    let cosine = first.axis.dot(second.axis);
+    let a = (first.sine - cosine * second.sine) / area;
+    let b = (second.sine - cosine * first.sine) / area;
+    let within = first.axis * a + second.axis * b;
+    let rest = 1.0 - within.length_squared();
+    (rest >= 0.0).then(|| {
+        let out = (rest / area).sqrt().copysign(cross.dot(about));
+        (within + cross * out).normalize()
+    })
+}
+
+/// The normal that suits one ruling and separates most.
+pub(super) fn along_rulings<A: Body, B: Body>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+    cost: &mut Cost,
+) -> Option<NormalSeparation> {
+    let mut best: Option<NormalSeparation> = None;
+    let of_first = cso.shape_1.rulings(at.normal, at.extreme.ids[0]);
+    for ruling in of_first.chain(rulings_2(cso, at)) {
+        if let Some(found) = along_ruling(cso, &ruling, at, cost) {
+            best = Some(best.map_or(found, |best| best.or(found)));
+        }
+    }
+    best
+}
+
+/// Steps of such a search. Each is a support pair.
+const MAX_STEPS: usize = 16;
+
+/// The circle of unit vectors with one sine to an axis.
+struct NormalCircle {
+    center: DVec3,
+    u: DVec3,
+    v: DVec3,
+}
+
+impl NormalCircle {
+    /// The first one is nearest to `about`.
+    fn new(ruling: &Ruling, about: DVec3) -> Self {
+        let beside = across(about, ruling.axis);
+        let across = beside.unwrap_or_else(|| ruling.axis.any_orthonormal_vector());
+        let radius = (1.0 - ruling.sine * ruling.sine).sqrt();
+        let u = across * radius;
+        Self {
+            center: ruling.axis * ruling.sine,
+            u,
+            v: ruling.axis.cross(u),
+        }
+    }
+
+    /// A normal, and the direction in which it turns.
+    fn at(&self, angle: f64) -> [DVec3; 2] {
+        let (sin, cos) = angle.sin_cos();
+        [
+            self.center + self.u * cos + self.v * sin,
+            self.v * cos - self.u * sin,
+        ]
+    }
+}
+
+/// The greatest separation along the normals that suit a ruling: where its slope, which the extreme
+/// vertices show, vanishes (the Illinois variant of regula falsi; Dowell, Jarratt, BIT 11, 1971).
+fn along_ruling<A: Body, B: Body>(
+    cso: &Cso<'_, A, B>,
+    ruling: &Ruling,
+    at: &NormalSeparation,
+    cost: &mut Cost,
+) -> Option<NormalSeparation> {
+    let circle = NormalCircle::new(ruling, at.normal);
+    let mut look = |angle: f64, near: &CsoVertex| {
+        let [normal, turn] = circle.at(angle);
+        let found = NormalSeparation::along(cso, normal, near, cost);
+        (found, -turn.dot(found.extreme.w))
+    };
+    let (mut best, first) = look(0.0, &at.extreme);
+    if first == 0.0 {
+        return Some(best);
+    }
+    let (mut from, mut slope) = (0.0, first);
+    let mut step = FIRST_STEP.copysign(first);
+    let mut bracket = None;
+    let mut steps = 0;
+    while bracket.is_none() && steps < MAX_STEPS {
+        let to = from + step;
+        let (found, next) = look(to, &best.extreme);
+        best = best.or(found);
+        if next * slope <= 0.0 {
+            bracket = Some([(from, slope), (to, next)]);
+        } else {
+            // Where the slope would vanish if it went on falling so, but not much farther than before.
+            let ahead = step * next / (slope - next);
+            let farther = step * 4.0;
+            step = if ahead / step > 0.0 && ahead.abs() < farther.abs() {
+                ahead * 1.2
+            } else {
+                farther
+            };
+            (from, slope) = (to, next);
+        }
+        steps += 1;
+        if from.abs() > std::f64::consts::PI {
+            break;
+        }
+    }
+    let [mut low, mut high] = bracket?;
+    while steps < MAX_STEPS && (high.0 - low.0).abs() > SETTLED_ANGLE && high.1 != 0.0 {
+        let between = high.0 - high.1 * (high.0 - low.0) / (high.1 - low.1);
+        let (found, slope) = look(between, &best.extreme);
+        best = best.or(found);
+        if (between - high.0).abs() < SETTLED_ANGLE {
+            break;
+        }
+        if slope * high.1 < 0.0 {
+            low = high;
+        } else {
+            low.1 *= 0.5;
+        }
+        high = (between, slope);
+        steps += 1;
+    }
+    Some(best)
+}

@@ -1,0 +1,208 @@
+//! Manifolds of pairs with a cylinder or a cone.
+
+use glam::{DVec3, Vec3};
+use parry3d::query::Unsupported;
+
+use super::UpdateManifold;
+use super::normals::Normals;
+use super::record::{AxisFrame, KernelManifold};
+use crate::curved::{self, Body, CurvedAnswer, CurvedQuery, CurvedScratch, Hint, Patch};
+use crate::manifold::Contacts;
+use crate::parry::constraints::{self, Constraints};
+use crate::parry::order::PairOrder;
+use crate::parry::pair::valid_pose;
+use crate::query::{Feature, PairMemory, Proximity};
+use crate::stats::{Cost, Stage};
+use crate::support::{Cso, FaceId, VertexId};
+use crate::tolerance::{MIN_DIRECTED_DISTANCE, UNCORRECTED};
+use crate::tuning::ABSURD_DEPTH;
+
+/// Two shapes in the kernels' order.
+pub(crate) struct CurvedPair<'a, A, B> {
+    pub shapes: (&'a A, &'a B),
+    pub border_radii: [f64; 2],
+    pub order: PairOrder,
+}
+
+impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
+    /// Brings the manifold of two shapes up to date of which one is curved.
+    pub(crate) fn update_curved<A: Body, B: Body>(
+        &mut self,
+        pair: &CurvedPair<'_, A, B>,
+        scratch: &mut CurvedScratch,
+    ) -> Result<(), Unsupported> {
+        let pose = pair.order.pose(valid_pose(self.pos12)?);
+        let cso = Cso {
+            shape_1: pair.shapes.0,
+            shape_2: pair.shapes.1,
+            pose: &pose,
+        };
+        let borders = pair.border_radii[0] + pair.border_radii[1];
+        let touching = MIN_DIRECTED_DISTANCE * (cso.size() + borders);
+        let max_distance = f64::from(self.prediction) + touching;
+        let mut manifold =
+            KernelManifold::with_borders(self.manifold, pair.order, AxisFrame::of(&cso));
+        let mut cost = Cost::default();
+        let mut query = CurvedQuery {
+            cso: &cso,
+            border_radii: pair.border_radii,
+            max_distance: max_distance + borders,
+            scratch,
+            cost: &mut cost,
+        };
+        let (answer, mut stage) = query.run(hint(&manifold, borders)).ok_or(Unsupported)?;
+        match answer {
+            CurvedAnswer::SpheresApart => manifold.forget(),
+            CurvedAnswer::Separated(apart) => manifold.set_axis(apart.axis, apart.ids),
+            CurvedAnswer::Near {
+                signed_distance,
+                normal,
+                on_1,
+            } => {
+                let near = Near {
+                    cso: &cso,
+                    border_radii: pair.border_radii,
+                    least: signed_distance - borders,
+                    normal,
+                    on_1,
+                    max_distance,
+                };
+                let is_kept = if let [Constraints::None, Constraints::None] = self.constraints {
+                    near.update(&mut manifold, &scratch.patch)
+                } else {
+                    let constraints = (self.constraints, self.pos12);
+                    near.update_constrained(&mut manifold, constraints, &mut scratch.patch);
+                    false
+                };
+                if is_kept && stage == Stage::Feature {
+                    stage = Stage::Kept;
+                }
+            }
+        }
+        self.stats.record(stage, &cost);
+        Ok(())
+    }
+}
+
+/// What a manifold remembers of its pair. Cores that are surrounded by `borders` may be apart although the
+/// shapes overlap.
+fn hint<M, C>(manifold: &KernelManifold<'_, M, C>, borders: f64) -> Hint {
+    match manifold.memory(None) {
+        PairMemory::None => Hint::None,
+        PairMemory::Axis(axis, ids) if manifold.manifold.points.is_empty() => {
+            Hint::Apart(axis, ids)
+        }
+        PairMemory::Axis(normal, _) | PairMemory::Contact(normal, _) => {
+            let points = manifold.manifold.points.iter();
+            let least = points.map(|point| point.dist).fold(f32::INFINITY, f32::min);
+            Hint::Contact(normal, f64::from(least) + borders < 0.0)
+        }
+    }
+}
+
+/// Shapes that are near each other.
+struct Near<'a, 'c, A, B> {
+    cso: &'a Cso<'c, A, B>,
+    border_radii: [f64; 2],
+    /// The signed distance with the borders.
+    least: f64,
+    normal: DVec3,
+    on_1: DVec3,
+    max_distance: f64,
+}
+
+impl<A: Body, B: Body> Near<'_, '_, A, B> {
+    fn proximity(&self) -> Proximity {
+        Proximity {
+            signed_distance: self.least,
+            normal: self.normal,
+            on_1: self.on_1,
+            on_2: self.on_1 + self.normal * self.least,
+            features: [Feature::Face(FaceId::default()); 2],
+        }
+    }
+
+    /// Leaves the contacts where they are, if that is right, or chooses them anew. Returns which.
+    fn update<M, C: Default + Copy>(
+        &self,
+        manifold: &mut KernelManifold<'_, M, C>,
+        patch: &Patch,
+    ) -> bool {
+        let near = self.proximity();
+        let normals = Normals::of(&near, self.cso.pose);
+        let last = manifold.last_contacts(self.cso.pose);
+        let radius = self.cso.min_radius();
+        let is_kept = manifold
+            .keep_places(last.as_ref(), self.least, &normals, radius)
+            .is_some();
+        if !is_kept {
+            manifold.set_contacts(normals.rounded, &self.contacts(patch));
+        }
+        is_kept
+    }
+
+    fn contacts(&self, patch: &Patch) -> Contacts {
+        let deepest = (self.on_1, self.least);
+        let scale = self.cso.min_radius();
+        curved::contacts(patch, self.cso.pose, deepest, self.max_distance, scale)
+    }
+
+    /// The same along normals that the constraints correct.
+    fn update_constrained<M, C: Default + Copy>(
+        &self,
+        manifold: &mut KernelManifold<'_, M, C>,
+        (constraints, pos12): ([Constraints<'_>; 2], &parry3d::math::Pose),
+        patch: &mut Patch,
+    ) {
+        let normals = Normals::of(&self.proximity(), self.cso.pose);
+        let corrected = constraints::correct(
+            constraints,
+            pos12,
+            (self.cso, manifold.order),
+            self.max_distance + self.border_radii[0] + self.border_radii[1],
+            manifold.order.to_caller(normals.rounded),
+        );
+        let Some(corrected) = corrected.map(|corrected| manifold.order.to_kernel(corrected)) else {
+            manifold.set_axis(self.normal, [VertexId::default(); 2]);
+            return;
+        };
+        if corrected[0].abs_diff_eq(normals.rounded[0], UNCORRECTED) {
+            self.update(manifold, patch);
+        } else if let Some(contacts) = self.along(corrected, patch) {
+            manifold.set_contacts(corrected, &contacts);
+        } else if self.least < 0.0 {
+            // What overlaps must be pushed out, if not along the corrected normal.
+            let extreme =
+                self.cso
+                    .support(self.normal, self.starts(self.normal), &mut Cost::default());
+            patch.find(self.cso, self.normal, &extreme, self.border_radii);
+            manifold.set_contacts(normals.rounded, &self.contacts(patch));
+        } else {
+            manifold.set_axis(self.normal, [VertexId::default(); 2]);
+        }
+    }
+
+    fn starts(&self, normal: DVec3) -> [VertexId; 2] {
+        self.cso.start_vertices(normal)
+    }
+
+    /// The contacts along a corrected normal. The query's depth says nothing about them.
+    fn along(&self, corrected: [Vec3; 2], patch: &mut Patch) -> Option<Contacts> {
+        let normal = corrected[0].as_dvec3().normalize();
+        let extreme = self
+            .cso
+            .support(normal, self.starts(normal), &mut Cost::default());
+        patch.find(self.cso, normal, &extreme, self.border_radii);
+        let least = ABSURD_DEPTH * self.least.min(0.0) - 1e-6 * self.cso.min_radius();
+        patch.retain(least..=self.max_distance);
+        let deepest = patch.deepest_point()?;
+        let scale = self.cso.min_radius();
+        Some(curved::contacts(
+            patch,
+            self.cso.pose,
+            deepest,
+            self.max_distance,
+            scale,
+        ))
+    }
+}

@@ -1,0 +1,122 @@
+//! Cylinders and cones with each other and with everything else, against the oracle: signed distances, normals,
+//! and the gap at each contact, without a past and with one, in either order.
+
+use isa_gjk::IsaGjkDispatcher;
+use parry3d::math::Vector;
+use parry3d::shape::SharedShape;
+use testkit::curved::{Body, Faults, Judge, Meeting, tilted};
+use testkit::generate::Rng;
+use testkit::memory::{Manifold, Memory, cold_manifold};
+use testkit::pose::ExactPose;
+
+/// The promise, as a share of the smaller diameter.
+const PROMISE: f64 = 1e-5;
+
+fn curved(rng: &mut Rng, border: f32) -> Vec<Body> {
+    let sizes = [(0.5, 0.4), (0.05, 0.6), (1.5, 0.1)];
+    let (h, r) = sizes[rng.count(0, 2)];
+    vec![Body::cylinder(h, r, border), Body::cone(h, r, border)]
+}
+
+fn partners(rng: &mut Rng, border: f32) -> Vec<Body> {
+    let corners = [0; 3].map(|_| rng.direction().as_vec3() * 0.8);
+    let ends = [0; 2].map(|_| rng.direction().as_vec3() * 0.6);
+    let points: Vec<Vector> = (0..20).map(|_| rng.direction().as_vec3() * 0.7).collect();
+    let mut bodies = curved(rng, border);
+    bodies.extend([
+        Body::cuboid(Vector::new(0.4, 0.3, 0.8), border),
+        Body::triangle(corners, border),
+        Body::capsule(ends, 0.2),
+        Body::hull(&points, border).expect("a solid"),
+    ]);
+    bodies
+}
+
+fn flipped(manifold: &Manifold) -> Manifold {
+    let mut flipped = manifold.clone();
+    (flipped.local_n1, flipped.local_n2) = (manifold.local_n2, manifold.local_n1);
+    for point in &mut flipped.points {
+        (point.local_p1, point.local_p2) = (point.local_p2, point.local_p1);
+    }
+    flipped
+}
+
+/// What is wrong with a pair's manifolds: cold, in the other order, and warm from a pose beside it.
+fn faults(bodies: [&Body; 2], pose: ExactPose, rng: &mut Rng, prediction: f64) -> [Faults; 3] {
+    let dispatcher = IsaGjkDispatcher::default();
+    let judge = Judge::new(bodies, pose);
+    let [a, b]: [&SharedShape; 2] = bodies.map(|body| &body.shape);
+    let reach = prediction as f32;
+    let cold = cold_manifold(&dispatcher, &pose.to_f32(), [a, b], reach);
+    let back = cold_manifold(&dispatcher, &pose.inverse().to_f32(), [b, a], reach);
+    let mut memory = Memory::default();
+    let beside = tilted(pose, rng, 0.01);
+    let aside = ExactPose {
+        translation: pose.translation + rng.direction() * (0.003 * judge.size),
+        ..beside
+    };
+    memory.update(&dispatcher, &aside.to_f32(), [a, b], reach);
+    let warm = memory.update(&dispatcher, &pose.to_f32(), [a, b], reach);
+    // Contacts that stay are off their common line by the drift that they may have.
+    let mut with_past = judge.manifold(warm, prediction);
+    with_past.gap = 0.0;
+    [
+        judge.manifold(cold.as_ref(), prediction),
+        judge.manifold(back.as_ref().map(flipped).as_ref(), prediction),
+        with_past,
+    ]
+}
+
+fn check(border: f32, seed: u128) {
+    let mut rng = Rng::new(seed.into());
+    let gaps = [0.05, 0.005, 1e-6, -1e-6, -0.01, -0.05, -0.2];
+    let (mut pairs, mut bad, mut worst) = (0, 0, Faults::default());
+    for _ in 0..2 {
+        for first in curved(&mut rng, border) {
+            for second in partners(&mut rng, border) {
+                let size = first.diameter().min(second.diameter());
+                for meeting in Meeting::ALL {
+                    for gap in gaps {
+                        let bodies = [&second, &first];
+                        let Some(pose) = meeting.pose(&mut rng, bodies, gap * size) else {
+                            continue;
+                        };
+                        let found = faults(bodies, pose, &mut rng, 0.06 * size);
+                        pairs += 1;
+                        for (way, faults) in ["cold", "back", "warm"].into_iter().zip(found) {
+                            worst = worst.or(faults);
+                            if !faults.are_within(PROMISE) {
+                                bad += 1;
+                                if bad < 60 {
+                                    println!(
+                                        "{} {} {meeting:?} {gap} {way}: d {:.1e} r {:.1e} g {:.1e} {}{}{}",
+                                        second.name,
+                                        first.name,
+                                        faults.distance,
+                                        faults.regret,
+                                        faults.gap,
+                                        if faults.missing { "missing " } else { "" },
+                                        if faults.phantom { "phantom " } else { "" },
+                                        if faults.not_finite { "not finite" } else { "" },
+                                    );
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    println!("{pairs} pairs, {bad} bad, {worst:?}");
+    assert_eq!(bad, 0);
+}
+
+#[test]
+fn sharp_pairs_are_right() {
+    check(0.0, 331);
+}
+
+#[test]
+fn rounded_pairs_are_right() {
+    check(0.07, 332);
+}
