@@ -10,16 +10,16 @@ use crate::query::{self, Feature, Proximity};
 use crate::stats::Cost;
 use crate::support::{Cso, FaceId, Polytope, VertexId};
 use crate::tolerance::SAME_DEPTH;
-use crate::tuning::{ABSURD_DEPTH, SAME_POINT};
+use crate::tuning::SAME_POINT;
 
-/// The contacts along another `normal` than the query's, nearer than `max_distance`: corners of the patch
-/// between the faces whose normals are nearest to `normal`. The query's features are not used: if the
+/// The contacts along another `normal` than the query's, at distances from `least` to `most`: corners of the
+/// patch between the faces whose normals are nearest to `normal`. The query's features are not used: if the
 /// correction is large, they lie beside these faces. `None` if one of the faces is edge-on to `normal`.
 pub fn contacts_along<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     proximity: &Proximity,
     normal: DVec3,
-    max_distance: f64,
+    [least, most]: [f64; 2],
     scratch: &mut ClipScratch,
 ) -> Option<Contacts> {
     let ClipScratch {
@@ -39,10 +39,10 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
     patch.clip(cso, clipper);
     let corners = &clipper.corners;
     let scale = cso.min_radius();
-    let least = ABSURD_DEPTH * proximity.signed_distance.min(0.0) - SAME_DEPTH * scale;
+    let least = least - SAME_DEPTH * scale;
     let same = SAME_POINT * scale as f32;
     let distances = |_, x, y| patch.distances(x, y);
-    let range = least as f32..=max_distance as f32;
+    let range = least as f32..=most as f32;
     let summary = candidates.set(corners, distances, range, same);
     let mut selection = Selection::default();
     if let Some(deepest) = summary.deepest {

@@ -3,12 +3,14 @@
 use glam::Vec3;
 use parry3d::math::Pose;
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
-use parry3d::shape::{CompoundPseudoNormals, TrianglePseudoNormals};
+use parry3d::shape::TrianglePseudoNormals;
 
+use crate::manifold::Contacts;
 use crate::parry::order::PairOrder;
+use crate::parry::part_seams::PartSeams;
 use crate::stats::Cost;
 use crate::support::{Cso, Support};
-use crate::tolerance::{GRAZING, UNCORRECTED};
+use crate::tolerance::GRAZING;
 
 /// The constraints that correct the normals of a part's contacts. Computing them may cost more than finding
 /// that there is no contact.
@@ -17,7 +19,7 @@ pub(crate) enum Constraints<'a> {
     None,
     Given(&'a dyn NormalConstraints),
     OfTriangle(&'a dyn Fn() -> Option<TrianglePseudoNormals>),
-    OfPart(&'a CompoundPseudoNormals),
+    OfPart(PartSeams<'a>),
 }
 
 impl<'a> Constraints<'a> {
@@ -29,28 +31,11 @@ impl<'a> Constraints<'a> {
         matches!(self, Self::None)
     }
 
-    /// The normals to choose from in the place of `normal`, as the part sees them: those of its outer
-    /// faces, and of the faces next to these. None where `normal` is out of the surface itself.
-    ///
-    /// A normal out of a cut, where another part goes on, is perpendicular to outer faces or leans a
-    /// little towards any of them. How it leans says nothing about the surface: the overlap does.
-    pub fn instead_of(self, normal: Vec3) -> Option<impl Iterator<Item = Vec3>> {
-        let Self::OfPart(part) = self else {
-            return None;
-        };
-        let cones = &part.boundary_faces;
-        let is_outwards = cones
-            .iter()
-            .any(|cone| cone.face.dot(normal) > GRAZING as f32);
-        let projected = part.project_local_normal(normal)?;
-        let is_outer = is_outwards && projected.abs_diff_eq(normal, UNCORRECTED);
-        (!is_outer).then(|| {
-            cones.iter().flat_map(|cone| {
-                let face = cone.face;
-                let beside = move |half_way: &Vec3| *half_way * (2.0 * half_way.dot(face)) - face;
-                std::iter::once(face).chain(cone.edge_pseudo_normals.iter().map(beside))
-            })
-        })
+    fn part(self) -> Option<PartSeams<'a>> {
+        match self {
+            Self::OfPart(part) => Some(part),
+            _ => None,
+        }
     }
 
     /// Hands them to `f` as parry's routines want them.
@@ -58,7 +43,7 @@ impl<'a> Constraints<'a> {
         match self {
             Self::None => f(None),
             Self::Given(constraints) => f(Some(constraints)),
-            Self::OfPart(normals) => f(Some(normals)),
+            Self::OfPart(part) => f(Some(part.normals)),
             Self::OfTriangle(compute) => match compute() {
                 Some(normals) => f(Some(&Leaning(normals))),
                 None => f(None),
@@ -81,46 +66,88 @@ impl NormalConstraints for Leaning {
     }
 }
 
-/// The normals of a contact, each as its own shape sees it, corrected: first out of cuts, where another
-/// part goes on, then into the cones of outer normals. `None` if there can be no contact along them.
-/// `order` is that of the shapes of `cso`.
-#[inline(never)]
-pub(crate) fn correct<A: Support, B: Support>(
-    [c1, c2]: [Constraints<'_>; 2],
-    pos12: &Pose,
-    (cso, order): (&Cso<'_, A, B>, PairOrder),
-    max_distance: f64,
-    [mut n1, mut n2]: [Vec3; 2],
-) -> Option<[Vec3; 2]> {
-    let rotation = pos12.rotation;
-    let least_overlap = |candidates: &mut dyn Iterator<Item = [Vec3; 2]>| {
-        outermost(cso, order, candidates).filter(|(_, distance)| *distance <= max_distance)
-    };
-    if let Some(outer) = c1.instead_of(n1) {
-        let mut pairs = outer.map(|normal| [normal, rotation.inverse() * -normal]);
-        ([n1, n2], _) = least_overlap(&mut pairs)?;
-    }
-    if let Some(outer) = c2.instead_of(n2) {
-        let mut pairs = outer.map(|normal| [rotation * -normal, normal]);
-        ([n1, n2], _) = least_overlap(&mut pairs)?;
-    }
-    let is_possible =
-        c1.with(|c1| c2.with(|c2| (c1, c2).project_local_normals(pos12, &mut n1, &mut n2)));
-    is_possible.then_some([n1, n2])
+/// Normals of a contact, in the caller's order, each as its own shape sees it.
+pub(crate) struct Corrected {
+    pub normals: [Vec3; 2],
+    /// Of normals that are not near the query's: the distance along them of the shapes as wholes, beneath
+    /// which there is no contact.
+    pub least: Option<f64>,
 }
 
-/// Of pairs of normals, each as its own shape sees it, those along which the shapes overlap least, and
-/// their distance along these.
-fn outermost<A: Support, B: Support>(
-    cso: &Cso<'_, A, B>,
-    order: PairOrder,
-    candidates: &mut dyn Iterator<Item = [Vec3; 2]>,
-) -> Option<([Vec3; 2], f64)> {
-    let distances = candidates.map(|normals| {
-        let [normal, _] = order.to_kernel(normals);
-        let normal = normal.as_dvec3();
-        let extreme = cso.support(normal, cso.start_vertices(normal), &mut Cost::default());
-        (normals, -extreme.w.dot(normal))
-    });
-    distances.max_by(|(_, a), (_, b)| a.total_cmp(b))
+/// A pair with parts.
+pub(crate) struct ConstrainedPair<'a, 'c, A, B> {
+    pub cso: &'a Cso<'c, A, B>,
+    /// That of the shapes of `cso`.
+    pub order: PairOrder,
+    /// In the caller's order, as `pos12`.
+    pub constraints: [Constraints<'a>; 2],
+    pub pos12: &'a Pose,
+    pub max_distance: f64,
+}
+
+impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
+    /// The normals, corrected: first out of cuts, where another part goes on, then into the cones of outer
+    /// normals. `None` if there can be no contact along them.
+    #[inline(never)]
+    pub fn correct(&self, normals: [Vec3; 2]) -> Option<Corrected> {
+        let mut corrected = Corrected {
+            normals,
+            least: None,
+        };
+        for side in [0, 1] {
+            let part = self.constraints[side].part();
+            if part.is_some_and(|part| part.is_cut(corrected.normals[side])) {
+                corrected = self.way_out(side, f64::INFINITY)?;
+            }
+        }
+        let [n1, n2] = &mut corrected.normals;
+        let [c1, c2] = self.constraints;
+        let is_possible =
+            c1.with(|c1| c2.with(|c2| (c1, c2).project_local_normals(self.pos12, n1, n2)));
+        is_possible.then_some(corrected)
+    }
+
+    /// The outer normals of a part along which the shapes overlap least, but by more than at a distance.
+    pub fn way_out(&self, side: usize, beyond: f64) -> Option<Corrected> {
+        let rotation = self.pos12.rotation;
+        let outer = self.constraints[side].part()?.outer_normals();
+        let ways = outer.map(|normal| {
+            let other = if side == 0 {
+                rotation.inverse() * -normal
+            } else {
+                rotation * -normal
+            };
+            let normals = if side == 0 {
+                [normal, other]
+            } else {
+                [other, normal]
+            };
+            let [along, _] = self.order.to_kernel(normals);
+            let along = along.as_dvec3();
+            let cso = self.cso;
+            let start = cso.start_vertices(along);
+            let extreme = cso.support(along, start, &mut Cost::default());
+            (normals, -extreme.w.dot(along))
+        });
+        let (normals, distance) = ways
+            .filter(|(_, distance)| *distance < beyond)
+            .max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        (distance <= self.max_distance).then_some(Corrected {
+            normals,
+            least: Some(distance),
+        })
+    }
+
+    /// The side of a part whose contacts other parts cover, if there is one. Contacts and normals are in the
+    /// kernels' order.
+    pub fn covered_side(&self, contacts: &Contacts, [n1, n2]: [Vec3; 2]) -> Option<usize> {
+        let [c1, c2] = self.order.to_kernel(self.constraints);
+        let on_1 = contacts.iter().map(|contact| contact.on_1);
+        let on_2 = contacts.iter().map(|contact| contact.on_2);
+        let covered = self.order.to_caller([
+            (c1.part()).is_some_and(|part| part.are_covered(self.cso.shape_1, on_1, n1)),
+            (c2.part()).is_some_and(|part| part.are_covered(self.cso.shape_2, on_2, n2)),
+        ]);
+        covered.iter().position(|is_covered| *is_covered)
+    }
 }

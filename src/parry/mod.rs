@@ -14,6 +14,7 @@ mod manifold;
 mod operand;
 mod order;
 mod pair;
+mod part_seams;
 pub mod recording;
 mod scaled;
 mod scene;

@@ -8,6 +8,7 @@ mod capsules;
 mod changed_shapes;
 mod coherence;
 mod contacts;
+mod covered;
 mod curved;
 mod curved_pairs;
 mod curved_patches;

@@ -78,6 +78,8 @@ struct Ride {
     /// The share of the speed that is left.
     left: Real,
     aside: Real,
+    /// Along both horizontal axes.
+    moved: Real,
 }
 
 /// How a body fares that starts with `speed` along x, rolling by `spin`.
@@ -106,7 +108,9 @@ fn ride(
         hop = hop.max(world.bodies[body].translation().y - start.y);
     }
     let body = &world.bodies[body];
+    let way = body.translation() - start;
     Ride {
+        moved: way.x.hypot(way.z),
         hop,
         left: body.linvel().x / speed,
         aside: (body.translation().z - start.z).abs(),
@@ -126,7 +130,9 @@ fn a_wheel_rolls_over_a_fine_mesh_as_over_a_floor() {
         let start = (Vector::new(0.0, height, 0.013), speed, -speed / radius);
         let steps = (180.0 / speed) as usize;
         for (mean, ground) in means.iter_mut().zip([&fine, &whole]) {
-            let Ride { hop, left, aside } = ride(ground, &wheel, start, 0.8, steps);
+            let Ride {
+                hop, left, aside, ..
+            } = ride(ground, &wheel, start, 0.8, steps);
             for (mean, value) in mean.iter_mut().zip([hop, left, aside]) {
                 *mean += value / speeds.len() as Real;
             }
@@ -157,6 +163,66 @@ fn seams_of_a_compound_do_not_stop_what_slides() {
     slide_over(&PreparedShapes::default().prepare(&row(&prepared)));
 }
 
+fn block(low: Vector, high: Vector) -> (Pose, SharedShape) {
+    let centre = Pose::from_translation((low + high) * 0.5);
+    (centre, cuboid_hull((high - low) * 0.5))
+}
+
+/// Parts that parry's pseudo-normals know no seams between: none of their faces are equal.
+fn decomposed() -> [(&'static str, SharedShape); 4] {
+    let row = |overlap: Real| {
+        let part = |i: usize| {
+            let x = i as Real - 0.5;
+            let low = Vector::new(x - overlap, -0.5, -0.5);
+            block(low, Vector::new(x + 1.0 + overlap, 0.5, 0.5))
+        };
+        (0..10).map(part).collect()
+    };
+    let part = |i: usize| {
+        let x = i as Real - 0.5;
+        let [depth, middle] = [[0.2, 0.1], [0.5, -0.1]][i % 2];
+        [[-0.5, middle], [middle, 0.5]]
+            .map(|[z1, z2]| block(Vector::new(x, -depth, z1), Vector::new(x + 1.0, 0.5, z2)))
+    };
+    let flags = CompoundFlags::FIX_INTERNAL_EDGES;
+    [
+        ("gaps", row(-2e-4)),
+        ("overlaps of a millimetre", row(5e-4)),
+        ("overlaps of two centimetres", row(0.01)),
+        ("joints like a T", (0..10).flat_map(part).collect()),
+    ]
+    .map(|(name, parts)| {
+        (
+            name,
+            SharedShape::new(Compound::with_flags(parts, flags, None)),
+        )
+    })
+}
+
+#[test]
+fn parts_that_overlap_a_little_do_not_stop_what_slides() {
+    for (_, ground) in decomposed() {
+        slide_over(&ground);
+    }
+}
+
+/// Out of the whole, and not from part to part.
+#[test]
+fn what_is_pressed_in_over_a_seam_comes_out_where_it_is() {
+    for (name, ground) in decomposed() {
+        for half in [[0.3, 0.02, 0.3], [0.5, 0.03, 0.03], [0.1, 0.1, 0.1]].map(Vector::from) {
+            for i in -3i8..=3 {
+                let x = 2.5 + half.x * Real::from(i) * 0.32;
+                let start = Vector::new(x, 0.45 + half.y, 0.013);
+                let pressed = ride(&ground, &cuboid_hull(half), (start, 0.0, 0.0), 0.5, 60);
+                let what = format!("{half} at {x} on {name}");
+                assert!((pressed.hop - 0.05).abs() < 0.01, "{what}: {}", pressed.hop);
+                assert!(pressed.moved < 0.01, "{what}: {}", pressed.moved);
+            }
+        }
+    }
+}
+
 /// Slides shapes over a row of cubes whose seams must not stop them.
 fn slide_over(row: &SharedShape) {
     let hull = |half| (cuboid_hull(half), half);
@@ -170,7 +236,9 @@ fn slide_over(row: &SharedShape) {
             let x = 0.2 + 0.0137 * i as Real;
             for speed in [3.0, 5.0] {
                 let start = (Vector::new(x, 0.5 + half.y, 0.013), speed, 0.0);
-                let Ride { hop, left, aside } = ride(row, &mover, start, 0.0, 90);
+                let Ride {
+                    hop, left, aside, ..
+                } = ride(row, &mover, start, 0.0, 90);
                 let what = format!("{:?} of {half} at {x}, {speed} m/s", mover.shape_type());
                 assert!(hop < 1e-3, "{what}: hop {hop}");
                 assert!(left > 0.98, "{what}: speed left {left}");

@@ -78,6 +78,6 @@ fn part<'a>(compound: &'a Compound, seams: &'a Seams<'_>, id: u32) -> SubShape<'
         id,
         operand: Operand::new(&**shape),
         pos: Some(*pos),
-        constraints: seams.of_part(id),
+        constraints: seams.of_part(id, pos),
     }
 }

@@ -16,15 +16,16 @@ use parry3d::shape::{
 use crate::parry::constraints::Constraints;
 use crate::parry::hull_shape::HullShape;
 use crate::parry::int_hash::IntMap;
+use crate::parry::part_seams::PartSeams;
 use crate::parry::workspace::ThreadWorkspace;
 
 type PartNormals = Arc<[Option<CompoundPseudoNormals>]>;
 
 /// Those of one compound.
-pub(super) enum Seams<'a> {
-    /// Parry's own, if there are any.
-    Own(&'a Compound),
-    Computed(PartNormals),
+pub(super) struct Seams<'a> {
+    compound: &'a Compound,
+    /// In the place of parry's own.
+    computed: Option<PartNormals>,
 }
 
 impl<'a> Seams<'a> {
@@ -35,19 +36,30 @@ impl<'a> Seams<'a> {
                 && polyhedron(&compound.shapes()[part as usize].1).is_some()
         };
         let is_flagged = compound.flags().contains(CompoundFlags::FIX_INTERNAL_EDGES);
-        if is_flagged && compound.bvh().intersect_aabb(aabb).any(is_left_out) {
-            Self::Computed(ThreadWorkspace::with(|thread| thread.seams.find(compound)))
-        } else {
-            Self::Own(compound)
+        let is_incomplete = is_flagged && compound.bvh().intersect_aabb(aabb).any(is_left_out);
+        let compute = || ThreadWorkspace::with(|thread| thread.seams.find(compound));
+        Self {
+            compound,
+            computed: is_incomplete.then(compute),
         }
     }
 
-    pub fn of_part(&self, id: u32) -> Constraints<'_> {
-        let normals = match self {
-            Self::Own(compound) => compound.part_normal_constraints(id),
-            Self::Computed(normals) => normals[id as usize].as_ref(),
+    /// Of the part at `pos`.
+    pub fn of_part<'s>(&'s self, id: u32, pos: &'s Pose) -> Constraints<'s> {
+        let compound = self.compound;
+        let normals = match &self.computed {
+            Some(normals) => normals[id as usize].as_ref(),
+            None => compound.part_normal_constraints(id),
         };
-        normals.map_or(Constraints::None, Constraints::OfPart)
+        let seams = |normals| PartSeams {
+            compound,
+            id,
+            pos,
+            normals,
+        };
+        normals.map_or(Constraints::None, |normals| {
+            Constraints::OfPart(seams(normals))
+        })
     }
 }
 

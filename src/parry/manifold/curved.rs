@@ -8,7 +8,7 @@ use super::normals::Normals;
 use super::record::{AxisFrame, KernelManifold};
 use crate::curved::{self, Body, CurvedAnswer, CurvedQuery, CurvedScratch, Hint, Patch};
 use crate::manifold::Contacts;
-use crate::parry::constraints::{self, Constraints};
+use crate::parry::constraints::{ConstrainedPair, Constraints};
 use crate::parry::order::PairOrder;
 use crate::parry::pair::valid_pose;
 use crate::query::{Feature, PairMemory, Proximity};
@@ -155,17 +155,18 @@ impl<A: Body, B: Body> Near<'_, '_, A, B> {
         patch: &mut Patch,
     ) {
         let normals = Normals::of(&self.proximity(), self.cso.pose);
-        let corrected = constraints::correct(
+        let pair = ConstrainedPair {
+            cso: self.cso,
+            order: manifold.order,
             constraints,
             pos12,
-            (self.cso, manifold.order),
-            self.max_distance + self.border_radii[0] + self.border_radii[1],
-            manifold.order.to_caller(normals.rounded),
-        );
-        let Some(corrected) = corrected.map(|corrected| manifold.order.to_kernel(corrected)) else {
+            max_distance: self.max_distance + self.border_radii[0] + self.border_radii[1],
+        };
+        let Some(found) = pair.correct(manifold.order.to_caller(normals.rounded)) else {
             manifold.set_axis(self.normal, [VertexId::default(); 2]);
             return;
         };
+        let corrected = manifold.order.to_kernel(found.normals);
         if corrected[0].abs_diff_eq(normals.rounded[0], UNCORRECTED) {
             self.update(manifold, patch);
         } else if let Some(contacts) = self.along(corrected, patch) {

@@ -8,11 +8,12 @@ use super::record::KernelManifold;
 use super::sink::UpdateContacts;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch, Contacts};
-use crate::parry::constraints::{self, Constraints};
+use crate::parry::constraints::{ConstrainedPair, Constraints, Corrected};
 use crate::pose::RelativePose;
 use crate::query::{self, FlushFaces, LastContacts, Proximity};
 use crate::support::{Cso, Polytope};
 use crate::tolerance::UNCORRECTED;
+use crate::tuning::ABSURD_DEPTH;
 
 pub(super) struct PolytopeContacts<'a, 'c, B> {
     pub cso: &'a Cso<'c, Hull, B>,
@@ -66,40 +67,34 @@ impl<B: Polytope> UpdateContacts for PolytopeContacts<'_, '_, B> {
 impl<B: Polytope> PolytopeContacts<'_, '_, B> {
     /// The same along normals that the constraints correct.
     fn update_constrained<M, C: Default + Copy>(
-        self,
+        mut self,
         manifold: &mut KernelManifold<'_, M, C>,
         last: Option<&LastContacts>,
         near: &Proximity,
         normals: &Normals,
     ) -> bool {
-        let (cso, max_distance) = (self.cso, self.max_distance);
-        let corrected = constraints::correct(
-            *self.constraints,
-            self.pos12,
-            (cso, manifold.order),
-            max_distance,
-            manifold.order.to_caller(normals.rounded),
-        );
-        let corrected = corrected.map(|corrected| manifold.order.to_kernel(corrected));
-        let contacts = match corrected {
-            None => None,
-            // The query's depth says nothing about contacts along a corrected normal.
-            Some(corrected) if !corrected[0].abs_diff_eq(normals.rounded[0], UNCORRECTED) => {
-                let normal = corrected[0].as_dvec3().normalize();
-                manifold::contacts_along(cso, near, normal, max_distance, &mut *self.scratch)
-                    .map(|contacts| (corrected, contacts))
-                    // What overlaps must be pushed out, if not along the corrected normal.
-                    .or_else(|| {
-                        (near.signed_distance < 0.0).then(|| self.along_normal(near, normals))
-                    })
-            }
-            Some(_) => {
-                if manifold.keep_contacts(last, near, normals, cso.min_radius()) {
-                    return true;
-                }
-                Some(self.along_normal(near, normals))
-            }
+        let cso = self.cso;
+        let pair = ConstrainedPair {
+            cso,
+            order: manifold.order,
+            constraints: *self.constraints,
+            pos12: self.pos12,
+            max_distance: self.max_distance,
         };
+        let corrected = pair.correct(pair.order.to_caller(normals.rounded));
+        let is_as_it_was = corrected.as_ref().is_some_and(|corrected| {
+            let [normal, _] = pair.order.to_kernel(corrected.normals);
+            normal.abs_diff_eq(normals.rounded[0], UNCORRECTED)
+        });
+        if is_as_it_was && manifold.keep_contacts(last, near, normals, cso.min_radius()) {
+            return true;
+        }
+        let contacts = if is_as_it_was {
+            Some(self.along_normal(near, normals))
+        } else {
+            corrected.and_then(|corrected| self.along_corrected(&pair, near, normals, &corrected))
+        };
+        let contacts = contacts.and_then(|contacts| self.uncovered(&pair, near, contacts));
         match contacts {
             Some((normals, contacts)) => manifold.set_contacts(normals, &contacts),
             // Discarded: there is no contact, but there is a place to start from.
@@ -108,8 +103,53 @@ impl<B: Polytope> PolytopeContacts<'_, '_, B> {
         false
     }
 
-    fn along_normal(self, near: &Proximity, normals: &Normals) -> ([Vec3; 2], Contacts) {
+    fn along_normal(&mut self, near: &Proximity, normals: &Normals) -> ([Vec3; 2], Contacts) {
         let contacts = manifold::contacts(self.cso, near, self.max_distance, self.scratch);
         (normals.rounded, contacts)
+    }
+
+    fn along_corrected(
+        &mut self,
+        pair: &ConstrainedPair<'_, '_, Hull, B>,
+        near: &Proximity,
+        normals: &Normals,
+        corrected: &Corrected,
+    ) -> Option<([Vec3; 2], Contacts)> {
+        self.along(pair, near, corrected)
+            // What overlaps must be pushed out, if not along the corrected normal.
+            .or_else(|| (near.signed_distance < 0.0).then(|| self.along_normal(near, normals)))
+    }
+
+    fn along(
+        &mut self,
+        pair: &ConstrainedPair<'_, '_, Hull, B>,
+        near: &Proximity,
+        corrected: &Corrected,
+    ) -> Option<([Vec3; 2], Contacts)> {
+        let normals = pair.order.to_kernel(corrected.normals);
+        let normal = normals[0].as_dvec3().normalize();
+        // The query's depth says little about contacts along a corrected normal.
+        let absurd = || ABSURD_DEPTH * near.signed_distance.min(0.0);
+        let range = [corrected.least.unwrap_or_else(absurd), self.max_distance];
+        let contacts = manifold::contacts_along(self.cso, near, normal, range, self.scratch)?;
+        Some((normals, contacts))
+    }
+
+    /// The contacts, or others if they are all on a face that another part covers.
+    fn uncovered(
+        &mut self,
+        pair: &ConstrainedPair<'_, '_, Hull, B>,
+        near: &Proximity,
+        mut chosen: ([Vec3; 2], Contacts),
+    ) -> Option<([Vec3; 2], Contacts)> {
+        let mut beyond = f64::INFINITY;
+        while chosen.1.len > 0
+            && let Some(side) = pair.covered_side(&chosen.1, chosen.0)
+        {
+            let out = pair.way_out(side, beyond)?;
+            beyond = out.least?;
+            chosen = self.along(pair, near, &out)?;
+        }
+        (chosen.1.len > 0).then_some(chosen)
     }
 }

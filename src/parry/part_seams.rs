@@ -1,0 +1,91 @@
+//! Where the surface of a compound's part is not that of the compound, because another part covers it.
+//!
+//! Parry's pseudo-normals leave out the faces that two parts share as a whole. Parts of most
+//! decompositions touch, or overlap a little, on shares of their faces: that depends on the place.
+
+use glam::Vec3;
+use parry3d::bounding_volume::Aabb;
+use parry3d::math::Pose;
+use parry3d::query::details::NormalConstraints;
+use parry3d::shape::{CompositeShape, Compound, CompoundPseudoNormals};
+
+use crate::support::Support;
+use crate::tolerance::{GRAZING, SEAM_INSET, SEAM_STEP, UNCORRECTED};
+
+/// One part of a compound whose inner edges are corrected. Normals and places are in its frame.
+#[derive(Clone, Copy)]
+pub(crate) struct PartSeams<'a> {
+    pub compound: &'a Compound,
+    pub id: u32,
+    pub pos: &'a Pose,
+    pub normals: &'a CompoundPseudoNormals,
+}
+
+impl<'a> PartSeams<'a> {
+    /// The normals of the outer faces, and of the faces next to these.
+    pub fn outer_normals(self) -> impl Iterator<Item = Vec3> + use<'a> {
+        self.normals.boundary_faces.iter().flat_map(|cone| {
+            let face = cone.face;
+            let beside = move |half_way: &Vec3| *half_way * (2.0 * half_way.dot(face)) - face;
+            std::iter::once(face).chain(cone.edge_pseudo_normals.iter().map(beside))
+        })
+    }
+
+    /// Whether a normal is out of a cut, where another part goes on. Such a normal is perpendicular to outer
+    /// faces or leans a little towards any of them. How it leans says nothing about the surface: the
+    /// overlap does.
+    pub fn is_cut(self, normal: Vec3) -> bool {
+        let Some(projected) = self.normals.project_local_normal(normal) else {
+            return false;
+        };
+        let is_outwards = self.faces().any(|face| face.dot(normal) > GRAZING as f32);
+        !is_outwards || !projected.abs_diff_eq(normal, UNCORRECTED)
+    }
+
+    /// Whether other parts cover contacts of this part, which is `shape`, at places on its surface: all of
+    /// them along the normal of a face, the first along any other normal. That has been found at a corner or
+    /// an edge, and only the first contact is sure to lie there.
+    pub fn are_covered(
+        self,
+        shape: &impl Support,
+        mut places: impl Iterator<Item = Vec3>,
+        normal: Vec3,
+    ) -> bool {
+        let own = |face: &Vec3| face.abs_diff_eq(normal, UNCORRECTED);
+        if let Some(face) = self.faces().find(own) {
+            return places.all(|place| self.goes_on(shape, place, face));
+        }
+        let Some(place) = places.next() else {
+            return false;
+        };
+        let near = SEAM_STEP * shape.radius();
+        let is_there = |face: &Vec3| {
+            let outwards = face.as_dvec3();
+            let beneath = || shape.extent(outwards) - outwards.dot(place.as_dvec3());
+            face.dot(normal) > GRAZING as f32 && beneath() < near
+        };
+        let mut faces = self.faces().filter(is_there);
+        faces.any(|face| self.goes_on(shape, place, face))
+    }
+
+    fn faces(self) -> impl Iterator<Item = Vec3> + use<'a> {
+        self.normals.boundary_faces.iter().map(|cone| cone.face)
+    }
+
+    /// Whether another part is beyond a face.
+    fn goes_on(self, shape: &impl Support, place: Vec3, face: Vec3) -> bool {
+        let inwards = (shape.center().as_vec3() - place) * SEAM_INSET as f32;
+        let beyond = place + inwards + face * (SEAM_STEP * shape.radius()) as f32;
+        let point = self.pos.transform_point(beyond);
+        let there = Aabb::new(point, point);
+        let near = self.compound.bvh().intersect_aabb(&there);
+        let mut others = near.filter(|other| *other != self.id);
+        others.any(|other| {
+            let mut is_inside = false;
+            self.compound.map_part_at(other, &mut |pos, part, _| {
+                is_inside = pos.is_some_and(|pos| part.contains_point(pos, point));
+            });
+            is_inside
+        })
+    }
+}
