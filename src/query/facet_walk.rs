@@ -57,7 +57,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         verdict: &Verdict,
         flush: Option<&FlushFaces>,
     ) -> Found {
-        if let Some(near) = flush.and_then(|flush| self.certify_flush(verdict, flush)) {
+        if let Some(near) = flush.and_then(|flush| self.certify_flush(features, flush)) {
             return Some((Answer::Near(near), Stage::Feature));
         }
         let mut walk = self.start_walk(normal, features, Stage::Feature, Start::Warm);

@@ -12,10 +12,9 @@
 use glam::DVec3;
 
 use super::polygon::{cone_contains_ball, inset, inset_of_quadrilateral};
-use super::verdict::Verdict;
 use crate::map_pair::map_pair;
 use crate::query::Query;
-use crate::query::feature::{Feature, vertices};
+use crate::query::feature::Feature;
 use crate::query::last_contacts::LastContacts;
 use crate::query::types::Proximity;
 use crate::support::{Cso, FaceId, Polytope};
@@ -36,77 +35,126 @@ struct PointPair {
 }
 
 impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
-    /// Proves by flush faces what the `verdict` on remembered features leaves open. The plane of a facet bounds
-    /// the distance from below, the faces bound it from above.
+    /// Answers with flush faces alone. The plane of one of them bounds the distance from below, both faces together
+    /// bound it from above. `features` are those of the deepest contact.
     pub(in crate::query) fn certify_flush(
         &mut self,
-        verdict: &Verdict,
+        features: [Feature; 2],
         flush: &FlushFaces,
     ) -> Option<Proximity> {
-        let normal = match verdict {
-            Verdict::Undecided(candidate) => {
-                return self.is_depth(candidate, flush).then_some(*candidate);
-            }
-            Verdict::OutsideEdge(side) => side.normal,
-            Verdict::NotSupporting(_, normal) => *normal,
-            Verdict::Separated(_) | Verdict::Certified(_) | Verdict::Degenerate => return None,
-        };
-        if !flush.are_along(self.cso, normal) {
+        // The face that a corner of the other one touches is likely the one whose plane supports the difference.
+        let first = usize::from(matches!(features[1], Feature::Face(_)));
+        [first, 1 - first]
+            .into_iter()
+            .find_map(|side| self.certify_face(side, features, flush))
+    }
+
+    /// Answers with the plane of the face on one side.
+    fn certify_face(
+        &mut self,
+        side: usize,
+        features: [Feature; 2],
+        flush: &FlushFaces,
+    ) -> Option<Proximity> {
+        let (normal, signed_distance) = self.distance_to_face(side, features, flush.faces);
+        if signed_distance > self.max_distance || !flush.are_along(self.cso, normal) {
             return None;
         }
-        let features = flush.faces.map(Feature::Face);
-        let start = vertices(self.cso, features);
-        let extreme = self.cso.support(normal, start, self.cost);
-        let signed_distance = -normal.dot(extreme.w);
-        let tolerance = self.tolerance();
-        let place = (flush.contacts).middle_of_deepest(normal, FLUSH_TIE * tolerance);
-        let most = signed_distance + tolerance;
-        let is_proved =
-            signed_distance <= self.max_distance && flush.are_within(self.cso, normal, place, most);
-        is_proved.then(|| Proximity {
+        let most = signed_distance + self.tolerance();
+        let tie = FLUSH_TIE * self.tolerance();
+        let place = flush.place_within(self.cso, normal, most, tie)?;
+        Some(Proximity {
             signed_distance,
             normal,
             on_1: place,
             on_2: place + normal * signed_distance,
-            features,
+            features: flush.faces.map(Feature::Face),
         })
+    }
+
+    /// The normal of the face on one side, in frame 1 from shape 1 to shape 2, and the signed distance of the other
+    /// shape from its plane.
+    #[inline]
+    fn distance_to_face(
+        &mut self,
+        side: usize,
+        features: [Feature; 2],
+        [face_1, face_2]: [FaceId; 2],
+    ) -> (DVec3, f64) {
+        let Cso {
+            shape_1,
+            shape_2,
+            pose,
+        } = self.cso;
+        if side == 0 {
+            let normal = shape_1.face_normal(face_1);
+            let start = features[1].vertex(*shape_2);
+            let (on_2, _) = shape_2.support(-pose.direction_to_2(normal), start, self.cost);
+            let height = normal.dot(pose.point_to_1(on_2));
+            (normal, height - shape_1.face_offset(face_1))
+        } else {
+            let outward = shape_2.face_normal(face_2);
+            let normal = -pose.direction_to_1(outward);
+            let start = features[0].vertex(*shape_1);
+            let (on_1, _) = shape_1.support(normal, start, self.cost);
+            let height = outward.dot(pose.point_to_2(on_1));
+            (normal, height - shape_2.face_offset(face_2))
+        }
     }
 
     /// Whether flush faces prove that no direction has a smaller depth than the candidate.
     pub(in crate::query) fn is_depth(&self, candidate: &Proximity, flush: &FlushFaces) -> bool {
         let (normal, deepest) = (candidate.normal, candidate.signed_distance);
-        flush.prove_depth(self.cso, normal, deepest, deepest + self.tolerance())
+        if !flush.are_along(self.cso, normal) {
+            return false;
+        }
+        let middle = flush.points_at(self.cso, normal, flush.contacts.middle());
+        flush.prove_depth(
+            self.cso,
+            normal,
+            &middle,
+            [deepest, deepest + self.tolerance()],
+        )
     }
 }
 
 impl FlushFaces {
-    /// Whether faces that look along a normal prove that the signed distance of the shapes, which are nearest to
-    /// each other near a `place`, is `most` or less.
-    fn are_within<A: Polytope, B: Polytope>(
+    /// A place over both faces, which look along a normal, that proves the signed distance of the shapes to be `most`
+    /// or less. It is in the middle of all contacts, or of those that tie for the deepest.
+    fn place_within<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
         normal: DVec3,
-        place: DVec3,
         most: f64,
-    ) -> bool {
+        tie: f64,
+    ) -> Option<DVec3> {
+        let place = self.contacts.middle();
+        let middle = self.points_at(cso, normal, place);
+        if middle.distance <= most {
+            let is_proved = if most < 0.0 {
+                self.prove_depth(cso, normal, &middle, [middle.distance, most])
+            } else {
+                self.are_inside(cso, &middle)
+            };
+            return is_proved.then_some(place);
+        }
+        let place = self.contacts.middle_of_deepest(normal, tie);
         let points = self.points_at(cso, normal, place);
-        points.distance <= most
-            && self.insets(cso, &points, inset, inset).is_some()
-            && (most >= 0.0 || self.prove_depth(cso, normal, points.distance, most))
+        let is_proved = points.distance <= most
+            && self.are_inside(cso, &points)
+            && (most >= 0.0 || self.prove_depth(cso, normal, &middle, [points.distance, most]));
+        is_proved.then_some(place)
     }
 
     /// Whether no direction has a smaller depth than `-most`, if the points over the origin along a normal have
-    /// the signed distance `deepest`.
+    /// the signed distance `deepest`. The disc is around those in the `middle`.
     fn prove_depth<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
         normal: DVec3,
-        deepest: f64,
-        most: f64,
+        middle: &PointPair,
+        [deepest, most]: [f64; 2],
     ) -> bool {
-        if !self.are_along(cso, normal) {
-            return false;
-        }
         let [face_1, face_2] = self.faces;
         let normals = [
             cso.shape_1.face_normal(face_1),
@@ -114,7 +162,6 @@ impl FlushFaces {
         ];
         let [cos_1, cos_2] = map_pair(normals, |n| n.dot(normal).abs());
         let [sin_1, sin_2] = map_pair(normals, |n| n.cross(normal).length());
-        let middle = self.points_at(cso, normal, self.contacts.middle());
         let proves = |[inset_1, inset_2]: [f64; 2]| {
             let radius = inset_1 * cos_1 + inset_2 * cos_2;
             let beneath = middle.distance - deepest + inset_1 * sin_1 + inset_2 * sin_2;
@@ -123,8 +170,8 @@ impl FlushFaces {
                 && cone_contains_ball(radius, -most, cso.center(), normal)
         };
         // A disc that is half as large mostly proves as much.
-        let few = self.insets(cso, &middle, inset_of_quadrilateral, inset_of_quadrilateral);
-        few.is_some_and(proves) || self.insets(cso, &middle, inset, inset).is_some_and(proves)
+        let few = self.insets(cso, middle, inset_of_quadrilateral, inset_of_quadrilateral);
+        few.is_some_and(proves) || self.insets(cso, middle, inset, inset).is_some_and(proves)
     }
 
     /// Whether both faces look along a normal.
@@ -159,6 +206,16 @@ impl FlushFaces {
             on_planes: [place + normal * height_1, place_2 + normal_2 * height_2],
             distance: height_2 - height_1,
         }
+    }
+
+    /// Whether points of the planes are inside of the faces. Quadrilaterals within these mostly prove that.
+    fn are_inside<A: Polytope, B: Polytope>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        points: &PointPair,
+    ) -> bool {
+        let few = self.insets(cso, points, inset_of_quadrilateral, inset_of_quadrilateral);
+        few.is_some() || self.insets(cso, points, inset, inset).is_some()
     }
 
     /// How far points of the planes are inside of the faces, if they are.
