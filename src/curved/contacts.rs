@@ -41,6 +41,41 @@ pub fn contacts(
     chosen.contacts(pose, least)
 }
 
+/// Places in the contact plane, seen from one of them.
+struct Field<'a> {
+    places: &'a [ContactPlace],
+    max_distance: f64,
+    origin: DVec3,
+    axes: [DVec3; 2],
+}
+
+impl<'a> Field<'a> {
+    fn at(&self, place: &ContactPlace) -> DVec2 {
+        let way = place.on_1 - self.origin;
+        DVec2::from(self.axes.map(|axis| way.dot(axis)))
+    }
+
+    /// That within reach with the greatest measure above `least`.
+    fn farthest(&self, least: f64, measure: impl Fn(DVec2) -> f64) -> Option<&'a ContactPlace> {
+        let mut best = (least, None);
+        for place in self.places {
+            let value = measure(self.at(place));
+            if place.distance <= self.max_distance && value > best.0 {
+                best = (value, Some(place));
+            }
+        }
+        best.1
+    }
+}
+
+/// Twice the area that a point adds to the triangle of the origin, `a` and `b`, beyond one of its edges at `b`.
+fn added_area(p: DVec2, a: DVec2, b: DVec2) -> f64 {
+    let turn = a.perp_dot(b).signum();
+    let beyond_ab = (p - a).perp_dot(b - a) * turn;
+    let beyond_bo = p.perp_dot(-b) * turn;
+    beyond_ab.max(beyond_bo)
+}
+
 struct Chosen {
     same: f64,
     normal: DVec3,
@@ -69,51 +104,27 @@ impl Chosen {
     fn spread(&mut self, places: &[ContactPlace], max_distance: f64) {
         let Some(first) = self.places[0] else { return };
         let u = self.normal.any_orthonormal_vector();
-        let v = self.normal.cross(u);
-        let at = |place: &ContactPlace| {
-            let way = place.on_1 - first.on_1;
-            DVec2::new(way.dot(u), way.dot(v))
+        let field = Field {
+            places,
+            max_distance,
+            origin: first.on_1,
+            axes: [u, self.normal.cross(u)],
         };
-        let near = |place: &&ContactPlace| place.distance <= max_distance;
-        let farthest = |least: f64, measure: &dyn Fn(DVec2) -> f64| {
-            let mut best = (least, None);
-            for place in places.iter().filter(near) {
-                let value = measure(at(place));
-                if value > best.0 {
-                    best = (value, Some(place));
-                }
-            }
-            best.1
-        };
-        let Some(far) = farthest(self.same * self.same, &|p| p.length_squared()) else {
+        let Some(far) = field.farthest(self.same * self.same, |p| p.length_squared()) else {
             return;
         };
-        let line = at(far);
+        let line = field.at(far);
         let least = self.same * line.length();
-        let left = farthest(least, &|p| line.perp_dot(p));
-        let right = farthest(least, &|p| -line.perp_dot(p));
+        let sides = [1.0, -1.0].map(|sign| field.farthest(least, |p| sign * line.perp_dot(p)));
         self.push(far);
-        match (left, right) {
-            (Some(left), Some(right)) => {
-                self.push(left);
-                self.push(right);
+        sides.into_iter().flatten().for_each(|side| self.push(side));
+        if let [Some(side), None] | [None, Some(side)] = sides {
+            let beyond = |p| added_area(p, line, field.at(side));
+            if let Some(last) = field.farthest(least, beyond)
+                && self.is_new(last)
+            {
+                self.push(last);
             }
-            (Some(side), None) | (None, Some(side)) => {
-                self.push(side);
-                let apex = at(side);
-                let turn = line.perp_dot(apex).signum();
-                let beyond = |p: DVec2| {
-                    let first_edge = (p - line).perp_dot(apex - line) * turn;
-                    let second_edge = p.perp_dot(-apex) * turn;
-                    first_edge.max(second_edge)
-                };
-                if let Some(last) = farthest(least, &beyond)
-                    && self.is_new(last)
-                {
-                    self.push(last);
-                }
-            }
-            (None, None) => {}
         }
     }
 

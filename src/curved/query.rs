@@ -76,42 +76,13 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         if self.cso.are_spheres_apart(self.max_distance) {
             return Some((CurvedAnswer::SpheresApart, Stage::BoundingSpheres));
         }
-        let (axis, ids, is_warm) = match hint {
-            Hint::None => {
-                let axis = self.cso.towards_origin();
-                (axis, self.cso.start_vertices(axis), false)
-            }
-            Hint::Apart(axis, [id_1, id_2]) => {
-                let ids = [
-                    self.cso.shape_1.clamp_vertex(id_1),
-                    self.cso.shape_2.clamp_vertex(id_2),
-                ];
-                (axis, ids, true)
-            }
-            Hint::Contact(normal, _) => (normal, self.cso.start_vertices(normal), true),
-        };
-        let axis = axis.normalize();
-        let start = CsoVertex {
-            ids,
-            ..CsoVertex::default()
-        };
-        let along_axis = NormalSeparation::along(self.cso, axis, &start, self.cost);
-        if along_axis.distance > self.max_distance {
-            return Some((apart(&along_axis), Stage::Axis));
+        let is_warm = !matches!(hint, Hint::None);
+        let mut at = self.along_hint(hint);
+        if at.distance <= self.max_distance && !matches!(hint, Hint::Contact(..)) {
+            at = at.or(self.tilted(&at));
         }
-        let mut at = along_axis;
-        if !matches!(hint, Hint::Contact(..)) {
-            let aside = at.extreme.w - axis * axis.dot(at.extreme.w);
-            let tilted = (axis - aside.normalize_or_zero() * TILT).normalize();
-            at = at.or(NormalSeparation::along(
-                self.cso,
-                tilted,
-                &at.extreme,
-                self.cost,
-            ));
-            if at.distance > self.max_distance {
-                return Some((apart(&at), Stage::Axis));
-            }
+        if at.distance > self.max_distance {
+            return Some((apart(&at), Stage::Axis));
         }
         let best = match self.stationary(&at) {
             ControlFlow::Break(answer) => return Some((answer, Stage::Feature)),
@@ -128,6 +99,37 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         };
         let answer = self.by_epa(best, is_deep)?;
         Some((answer, stage))
+    }
+
+    /// Along what is remembered, or along the line of centres.
+    fn along_hint(&mut self, hint: Hint) -> NormalSeparation {
+        let cso = self.cso;
+        let (axis, ids) = match hint {
+            Hint::None => {
+                let axis = cso.towards_origin();
+                (axis, cso.start_vertices(axis))
+            }
+            Hint::Apart(axis, [id_1, id_2]) => {
+                let ids = [
+                    cso.shape_1.clamp_vertex(id_1),
+                    cso.shape_2.clamp_vertex(id_2),
+                ];
+                (axis, ids)
+            }
+            Hint::Contact(normal, _) => (normal, cso.start_vertices(normal)),
+        };
+        let start = CsoVertex {
+            ids,
+            ..CsoVertex::default()
+        };
+        NormalSeparation::along(cso, axis.normalize(), &start, self.cost)
+    }
+
+    /// Along a normal that is tilted away from where the shapes come too near.
+    fn tilted(&mut self, at: &NormalSeparation) -> NormalSeparation {
+        let aside = at.extreme.w - at.normal * at.normal.dot(at.extreme.w);
+        let tilted = (at.normal - aside.normalize_or_zero() * TILT).normalize();
+        NormalSeparation::along(self.cso, tilted, &at.extreme, self.cost)
     }
 
     /// An answer by the pieces of surface near a normal, or the best normal that was found.

@@ -159,7 +159,7 @@ impl NormalCircle {
 }
 
 /// The greatest separation along the normals that suit a ruling: where its slope, which the extreme
-/// vertices show, vanishes (the Illinois variant of regula falsi; Dowell, Jarratt, BIT 11, 1971).
+/// vertices show, vanishes.
 fn along_ruling<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     ruling: &Ruling,
@@ -167,56 +167,81 @@ fn along_ruling<A: Body, B: Body>(
     cost: &mut Cost,
 ) -> Option<NormalSeparation> {
     let circle = NormalCircle::new(ruling, at.normal);
-    let mut look = |angle: f64, near: &CsoVertex| {
-        let [normal, turn] = circle.at(angle);
-        let found = NormalSeparation::along(cso, normal, near, cost);
-        (found, -turn.dot(found.extreme.w))
-    };
-    let (mut best, first) = look(0.0, &at.extreme);
-    if first == 0.0 {
+    let [normal, turn] = circle.at(0.0);
+    let best = NormalSeparation::along(cso, normal, &at.extreme, cost);
+    let slope = -turn.dot(best.extreme.w);
+    if slope == 0.0 {
         return Some(best);
     }
-    let (mut from, mut slope) = (0.0, first);
-    let mut step = FIRST_STEP.copysign(first);
-    let mut bracket = None;
-    let mut steps = 0;
-    while bracket.is_none() && steps < MAX_STEPS {
-        let to = from + step;
-        let (found, next) = look(to, &best.extreme);
-        best = best.or(found);
-        if next * slope <= 0.0 {
-            bracket = Some([(from, slope), (to, next)]);
-        } else {
+    let mut search = CircleSearch {
+        cso,
+        circle,
+        best,
+        steps_left: MAX_STEPS,
+        cost,
+    };
+    let bracket = search.bracket([0.0, slope])?;
+    search.close(bracket);
+    Some(search.best)
+}
+
+/// An angle on a circle of normals, and the slope of the separation there.
+type AngleAndSlope = [f64; 2];
+
+/// A search for the greatest separation on a circle of normals.
+struct CircleSearch<'a, 'c, A, B> {
+    cso: &'a Cso<'c, A, B>,
+    circle: NormalCircle,
+    best: NormalSeparation,
+    steps_left: usize,
+    cost: &'a mut Cost,
+}
+
+impl<A: Body, B: Body> CircleSearch<'_, '_, A, B> {
+    fn look(&mut self, angle: f64) -> AngleAndSlope {
+        self.steps_left = self.steps_left.saturating_sub(1);
+        let [normal, turn] = self.circle.at(angle);
+        let near = self.best.extreme;
+        let found = NormalSeparation::along(self.cso, normal, &near, self.cost);
+        self.best = self.best.or(found);
+        [angle, -turn.dot(found.extreme.w)]
+    }
+
+    /// Two angles between which the slope changes its sign.
+    fn bracket(&mut self, mut from: AngleAndSlope) -> Option<[AngleAndSlope; 2]> {
+        let mut step = FIRST_STEP.copysign(from[1]);
+        while self.steps_left > 0 && from[0].abs() < std::f64::consts::PI {
+            let to = self.look(from[0] + step);
+            if to[1] * from[1] <= 0.0 {
+                return Some([from, to]);
+            }
             // Where the slope would vanish if it went on falling so, but not much farther than before.
-            let ahead = step * next / (slope - next);
+            let ahead = step * to[1] / (from[1] - to[1]);
             let farther = step * 4.0;
             step = if ahead / step > 0.0 && ahead.abs() < farther.abs() {
                 ahead * 1.2
             } else {
                 farther
             };
-            (from, slope) = (to, next);
+            from = to;
         }
-        steps += 1;
-        if from.abs() > std::f64::consts::PI {
-            break;
+        None
+    }
+
+    /// Closes a bracket by the Illinois variant of regula falsi (Dowell, Jarratt, BIT 11, 1971).
+    fn close(&mut self, [mut low, mut high]: [AngleAndSlope; 2]) {
+        while self.steps_left > 0 && (high[0] - low[0]).abs() > SETTLED_ANGLE && high[1] != 0.0 {
+            let between = high[0] - high[1] * (high[0] - low[0]) / (high[1] - low[1]);
+            let found = self.look(between);
+            if (between - high[0]).abs() < SETTLED_ANGLE {
+                return;
+            }
+            if found[1] * high[1] < 0.0 {
+                low = high;
+            } else {
+                low[1] *= 0.5;
+            }
+            high = found;
         }
     }
-    let [mut low, mut high] = bracket?;
-    while steps < MAX_STEPS && (high.0 - low.0).abs() > SETTLED_ANGLE && high.1 != 0.0 {
-        let between = high.0 - high.1 * (high.0 - low.0) / (high.1 - low.1);
-        let (found, slope) = look(between, &best.extreme);
-        best = best.or(found);
-        if (between - high.0).abs() < SETTLED_ANGLE {
-            break;
-        }
-        if slope * high.1 < 0.0 {
-            low = high;
-        } else {
-            low.1 *= 0.5;
-        }
-        high = (between, slope);
-        steps += 1;
-    }
-    Some(best)
 }

@@ -110,20 +110,18 @@ impl<F> Updater<'_, F> {
             manifold: &mut *manifold,
             stats: self.stats,
         };
-        let is_done = if has_hull {
-            pair::visit_operands(operands, self.epoch, update).is_ok()
-        } else {
-            update_curved([g1, g2], update).is_ok()
-                || update_capsules(pos12, [g1, g2], prediction, manifold).is_ok()
-        };
-        if is_done {
+        if has_hull {
+            if pair::visit_operands(operands, self.epoch, update).is_ok() {
+                return Ok(());
+            }
+            self.stats.record_left(pair::why_left(pos12, [g1, g2]));
+        } else if update_curved([g1, g2], update).is_ok()
+            || update_capsules(pos12, [g1, g2], prediction, manifold).is_ok()
+        {
             return Ok(());
-        }
-        self.stats.record_left(if has_hull {
-            pair::why_left(pos12, [g1, g2])
         } else {
-            Left::NoHull
-        });
+            self.stats.record_left(Left::NoHull);
+        }
         let [c1, c2] = constraints;
         c1.with(|c1| {
             c2.with(|c2| {

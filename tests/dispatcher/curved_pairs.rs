@@ -68,7 +68,7 @@ fn faults(bodies: [&Body; 2], pose: ExactPose, rng: &mut Rng, prediction: f64) -
 }
 
 fn check(border: f32, seed: u128) {
-    let mut rng = Rng::new(seed.into());
+    let mut rng = Rng::new(seed);
     let gaps = [0.05, 0.005, 1e-6, -1e-6, -0.01, -0.05, -0.2];
     let (mut pairs, mut bad, mut worst) = (0, 0, Faults::default());
     for _ in 0..2 {
