@@ -67,6 +67,11 @@ impl<'a> Judge<'a> {
         }
     }
 
+    /// A point of body 2 in the frame of body 1.
+    pub fn apply(&self, on_2: DVec3) -> DVec3 {
+        self.pose.apply(on_2)
+    }
+
     /// How far a signed distance is outside of the true bounds.
     pub fn distance_error(&self, distance: f64) -> f64 {
         (self.exact.lower - distance)

@@ -47,17 +47,24 @@ impl<'a> Difference<'a> {
         Extreme { direction, point }
     }
 
-    /// The separation that a unit normal shows, borders included.
+    /// The separation that a unit normal shows, borders included. Only its own normal separates from a
+    /// half-space; what f32 holds of it counts as the same.
     pub fn separation(&self, normal: DVec3) -> f64 {
-        let is_bounded = |body: &Body, direction: DVec3| match body.core {
-            Core::HalfSpace(up) => up.dot(direction) > 1.0 - 1.0e-8,
-            _ => true,
+        let normal = match self.plane() {
+            Some(up) if up.distance(normal) < 1.0e-6 => up,
+            Some(_) => return f64::NEG_INFINITY,
+            None => normal,
         };
-        let in_2 = self.pose.rotation.inverse() * -normal;
-        if !is_bounded(self.bodies[0], normal) || !is_bounded(self.bodies[1], in_2) {
-            return f64::NEG_INFINITY;
-        }
         -self.extreme(normal).reach() - self.borders()
+    }
+
+    /// The normal of a half-space, from body 1 to body 2.
+    fn plane(&self) -> Option<DVec3> {
+        match (&self.bodies[0].core, &self.bodies[1].core) {
+            (Core::HalfSpace(up), _) => Some(*up),
+            (_, Core::HalfSpace(up)) => Some(-(self.pose.rotation * *up)),
+            _ => None,
+        }
     }
 
     fn borders(&self) -> f64 {
@@ -65,12 +72,7 @@ impl<'a> Difference<'a> {
     }
 
     pub fn signed_distance(&self) -> SignedDistance {
-        let plane = match (&self.bodies[0].core, &self.bodies[1].core) {
-            (Core::HalfSpace(up), _) => Some(*up),
-            (_, Core::HalfSpace(up)) => Some(-(self.pose.rotation * *up)),
-            _ => None,
-        };
-        match plane {
+        match self.plane() {
             Some(normal) => {
                 let separation = self.separation(normal);
                 SignedDistance {
