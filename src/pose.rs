@@ -67,6 +67,14 @@ impl RelativePose {
         ValidPose::new(pos12).map(Self::from)
     }
 
+    /// From the rotation and the place of shape 2 in frame 1.
+    pub(crate) fn from_parts(rotation: DQuat, translation: DVec3) -> Self {
+        Self {
+            rotation: DMat3::from_quat(rotation),
+            translation,
+        }
+    }
+
     /// The pose of shape 1 in frame 2.
     #[inline]
     pub fn inverse(&self) -> Self {

@@ -290,3 +290,10 @@ pub const SETTLED_ANGLE: f64 = 1e-9;
 /// Bounds of the distance of curved shapes differ by no more than this share of the smaller radius. The
 /// normal is off by the root of it, relative to the distance, and contacts beside each other by that.
 pub const FINE_GAP: f64 = 1e-9;
+
+/// A cast of turning shapes ends when these are apart by less than this share of the smaller radius: the
+/// promised accuracy of a distance. What their climbs may lose is less.
+pub(crate) const IMPACT_GAP: f64 = 1e-5;
+
+/// Parry takes an impact so soon after the start of such a cast for one at the start. In units of time.
+pub(crate) const AT_START: f64 = 1e-5;

@@ -70,7 +70,7 @@ fn inherited<C: Default + Copy>(contacts: &[TrackedContact<C>], place: Place) ->
 }
 
 /// The shape as a capsule, if it is finite and has a radius. A user's own shape may only look like a capsule.
-fn plain_capsule(shape: &dyn Shape) -> Option<Capsule> {
+pub(crate) fn plain_capsule(shape: &dyn Shape) -> Option<Capsule> {
     let capsule: &ParryCapsule = shape.as_shape()?;
     let [a, b] = [capsule.segment.a, capsule.segment.b].map(|p| p.as_dvec3());
     let radius = f64::from(capsule.radius);

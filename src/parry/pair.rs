@@ -18,9 +18,10 @@ use crate::stats::Left;
 use crate::support::{Cso, Polytope};
 use crate::tolerance::MIN_DIRECTED_DISTANCE;
 
-/// A hull and another shape, as the kernels see a pair: in the frame of the hull.
-pub(crate) struct Pair<'a, B> {
-    pub hull: &'a Hull,
+/// A hull and another shape, as the kernels see a pair: in the frame of the hull. Scene queries have pairs
+/// with another shape `A` in its place.
+pub(crate) struct Pair<'a, B, A = Hull> {
+    pub hull: &'a A,
     pub other: &'a B,
     /// The radii of the rounded borders around them.
     pub border_radii: [f64; 2],
@@ -28,16 +29,29 @@ pub(crate) struct Pair<'a, B> {
     pub order: PairOrder,
 }
 
-impl<'a, B> Pair<'a, B> {
+impl<'a, B, A> Pair<'a, B, A> {
     /// The pose of the other shape in the hull's frame, from the caller's pose.
     #[inline(always)]
     pub fn pose(&self, pos12: ValidPose<'_>) -> RelativePose {
         self.order.pose(pos12)
     }
 
+    /// The radii of both shapes, with their borders.
+    pub fn radii(&self) -> [f64; 2]
+    where
+        A: Support,
+        B: Support,
+    {
+        let [border_1, border_2] = self.border_radii;
+        [
+            self.hull.radius() + border_1,
+            self.other.radius() + border_2,
+        ]
+    }
+
     /// The Minkowski difference without borders.
     #[inline(always)]
-    pub fn cso<'c>(&self, pose: &'c RelativePose) -> Cso<'c, Hull, B>
+    pub fn cso<'c>(&self, pose: &'c RelativePose) -> Cso<'c, A, B>
     where
         'a: 'c,
     {

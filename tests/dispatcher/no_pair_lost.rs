@@ -151,12 +151,8 @@ fn scene_queries_are_supported_wherever_parry_supports_them() {
         for pose in poses().iter().step_by(5) {
             let agree = |ours: String, theirs: String, query: &str| {
                 let what = format!("{query}, {} / {} at {pose:?}", pair[0].name, pair[1].name);
-                if pair.iter().any(|sample| sample.has_hull) {
-                    let supported = |answer: &str| answer.starts_with("Ok");
-                    assert_eq!(supported(&ours), supported(&theirs), "{what}");
-                } else {
-                    assert_eq!(ours, theirs, "{what}");
-                }
+                let supported = |answer: &str| answer.starts_with("Ok");
+                assert_eq!(supported(&ours), supported(&theirs), "{what}");
             };
             macro_rules! compare {
                 ($query:ident $arguments:tt) => {

@@ -38,7 +38,7 @@ pub(crate) struct KernelFrame<'a> {
 }
 
 impl<'a> KernelFrame<'a> {
-    pub fn new<B>(pair: &Pair<'_, B>, pose: &'a RelativePose) -> Self {
+    pub fn new<A, B>(pair: &Pair<'_, B, A>, pose: &'a RelativePose) -> Self {
         Self {
             pose,
             border_radii: pair.border_radii,
@@ -67,7 +67,7 @@ pub(crate) struct NearestPoints<'a> {
 }
 
 impl<'a> NearestPoints<'a> {
-    pub fn new<B>(pair: &Pair<'_, B>, pose: &'a RelativePose) -> Self {
+    pub fn new<A, B>(pair: &Pair<'_, B, A>, pose: &'a RelativePose) -> Self {
         Self {
             frame: KernelFrame::new(pair, pose),
             nearest: None,

@@ -1,4 +1,4 @@
-//! Shape casts of hulls, by the GJK ray cast.
+//! Shape casts of convex shapes, by the GJK ray cast.
 
 use glam::DVec3;
 use parry3d::math::{Pose, Real, Vector};
@@ -9,6 +9,7 @@ use crate::curved::Body;
 use crate::hull::Hull;
 use crate::parry::pair::{self, Pair, PairVisitor};
 use crate::parry::scene::caller::{CallerProximity, KernelFrame};
+use crate::parry::scene::convex;
 use crate::parry::workspace::Workspace;
 use crate::pose::ValidPose;
 use crate::query::{Answer, PairMemory, Query};
@@ -32,9 +33,15 @@ pub(crate) fn cast_shapes(
         velocity,
         options,
     };
-    pair::visit(shape_1, shape_2, cast)
+    // Where they overlap at the start parry says what happens.
+    pair::visit(shape_1, shape_2, cast).or_else(|_| {
+        convex::visit([shape_1, shape_2], |pair, _| {
+            cast.cast(pair, |_, _, _| Err(Unsupported))
+        })
+    })
 }
 
+#[derive(Clone, Copy)]
 struct Cast<'a> {
     pos12: &'a Pose,
     velocity: Vector,
@@ -69,11 +76,11 @@ impl PairVisitor for Cast<'_> {
 
 impl Cast<'_> {
     /// `overlap` answers for shapes that are within the target distance at the start.
-    fn cast<B: Support>(
+    fn cast<A: Support, B: Support>(
         &self,
-        pair: &Pair<'_, B>,
+        pair: &Pair<'_, B, A>,
         overlap: impl FnOnce(
-            &Cso<'_, Hull, B>,
+            &Cso<'_, A, B>,
             DVec3,
             &KernelFrame<'_>,
         ) -> Result<Option<ShapeCastHit>, Unsupported>,
@@ -152,7 +159,7 @@ fn hit_at(impact: &Impact, velocity: DVec3, frame: &KernelFrame<'_>) -> ShapeCas
     hit(impact.time, &near, ShapeCastStatus::Converged)
 }
 
-fn hit(time: f64, near: &CallerProximity, status: ShapeCastStatus) -> ShapeCastHit {
+pub(super) fn hit(time: f64, near: &CallerProximity, status: ShapeCastStatus) -> ShapeCastHit {
     let [witness1, witness2] = near.points.map(|p| p.as_vec3());
     let [normal1, normal2] = near.normals.map(|n| n.as_vec3());
     ShapeCastHit {

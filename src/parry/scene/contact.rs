@@ -6,17 +6,21 @@ use parry3d::shape::{PolygonalFeatureMap, Shape};
 
 use crate::curved::Body;
 use crate::epa;
+use crate::gjk::{self, Outcome};
 use crate::parry::convert::HalfSpace;
 use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
 use crate::parry::scaled;
 use crate::parry::scene::caller::{KernelFrame, NearestPoints};
-use crate::parry::scene::separation::{Separation, SeparationQuery, over_half_space};
+use crate::parry::scene::capsules;
+use crate::parry::scene::convex::{self, Core};
+use crate::parry::scene::separation::{CoreSeparation, SeparationQuery, over_half_space};
 use crate::parry::workspace::Workspace;
 use crate::pose::ValidPose;
 use crate::query::{Full, Query};
+use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{Polytope, Support};
-use crate::tolerance::GJK_CURVED_GAP;
+use crate::tolerance::{GJK_CURVED_GAP, WITNESS_GAP};
 
 /// The deepest contact of shapes that overlap or are at most `prediction` apart.
 pub(crate) fn contact(
@@ -26,21 +30,68 @@ pub(crate) fn contact(
     prediction: Real,
 ) -> Result<Option<Contact>, Unsupported> {
     let query = ContactQuery { pos12, prediction };
+    let shapes = [shape_1, shape_2];
     pair::visit(shape_1, shape_2, query)
+        .or_else(|_| capsules::contact(pos12, shapes, prediction))
+        .or_else(|_| convex::visit_inexact(shapes, |pair, workspace| query.convex(pair, workspace)))
 }
 
+#[derive(Clone, Copy)]
 struct ContactQuery<'a> {
     pos12: &'a Pose,
     prediction: Real,
 }
 
 impl ContactQuery<'_> {
-    /// The contact of shapes that touch or overlap, by EPA.
-    fn depth<B: Support>(&self, pair: &Pair<'_, B>, workspace: &mut Workspace) -> Option<Contact> {
+    fn of_cores<A: Support, B: Support>(
+        &self,
+        pair: &Pair<'_, B, A>,
+        workspace: &mut Workspace,
+    ) -> Result<CoreSeparation, Unsupported> {
+        let query = SeparationQuery {
+            pos12: self.pos12,
+            max_distance: self.prediction,
+        };
+        query.of_cores(pair, GJK_CURVED_GAP, workspace)
+    }
+
+    /// Of shapes without a hull. Where curved cores overlap, how deep is parry's to say.
+    fn convex(
+        &self,
+        pair: &Pair<'_, Core, Core>,
+        workspace: &mut Workspace,
+    ) -> Result<Option<Contact>, Unsupported> {
+        match self.of_cores(pair, workspace)? {
+            CoreSeparation::Overlapping if pair.hull.is_curved() || pair.other.is_curved() => {
+                Err(Unsupported)
+            }
+            CoreSeparation::Overlapping => self.depth(pair, workspace).ok_or(Unsupported).map(Some),
+            CoreSeparation::Within(near) => Ok(Some(near.contact())),
+            CoreSeparation::Beyond => Ok(None),
+        }
+    }
+
+    /// The contact of shapes whose cores touch or overlap, by EPA. Its witness points are nearest where the
+    /// shapes are moved apart.
+    fn depth<A: Support, B: Support>(
+        &self,
+        pair: &Pair<'_, B, A>,
+        workspace: &mut Workspace,
+    ) -> Option<Contact> {
         let pose = pair.pose(ValidPose::new(self.pos12)?);
+        let cso = pair.cso(&pose);
         let cost = &mut Cost::default();
-        let found = epa::penetration(&pair.cso(&pose), &[], &mut workspace.epa, cost)?;
-        let points = [found.on_1, found.on_2];
+        let found = epa::penetration(&cso, &[], &mut workspace.epa, cost)?;
+        let way = found.normal * (found.depth + WITNESS_GAP * cso.min_radius());
+        let apart = pose.moved(way);
+        let apart = pair.cso(&apart);
+        let start = apart.support(found.normal, apart.start_vertices(found.normal), cost);
+        let points = match gjk::distance::<Preferred, _, _>(&apart, &[start], f64::INFINITY, cost) {
+            Outcome::Disjoint(closest) | Outcome::Unsure(closest) => {
+                [closest.on_1, closest.on_2 - way]
+            }
+            _ => [found.on_1, found.on_2],
+        };
         let near = KernelFrame::new(pair, &pose).near(found.normal, points, -found.depth);
         Some(near.contact())
     }
@@ -75,17 +126,13 @@ impl PairVisitor for ContactQuery<'_> {
         features: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
-        let query = SeparationQuery {
-            pos12: self.pos12,
-            max_distance: self.prediction,
-        };
-        match query.separation(pair, GJK_CURVED_GAP, workspace)? {
-            Separation::Overlapping => {
+        match self.of_cores(pair, workspace)? {
+            CoreSeparation::Overlapping => {
                 let contact = scaled::contact(pair, features, self.pos12);
                 Ok(contact.or_else(|| self.depth(pair, workspace)))
             }
-            Separation::Within(near) => Ok(Some(near.contact())),
-            Separation::Beyond => Ok(None),
+            CoreSeparation::Within(near) => Ok(Some(near.contact())),
+            CoreSeparation::Beyond => Ok(None),
         }
     }
 

@@ -1,5 +1,5 @@
-//! Scene queries: we answer convex pairs with a hull, shapes with parts are taken apart, and the fallback
-//! gets the rest.
+//! Scene queries: we answer the convex pairs that our kernels know, shapes with parts are taken apart, and the
+//! fallback gets the rest.
 
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::ShapeCastOptions;
@@ -7,11 +7,11 @@ use parry3d::query::{
     ClosestPoints, Contact, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
     ShapeCastHit, ShapeDistance, ShapeIntersection, Unsupported,
 };
-use parry3d::shape::Shape;
+use parry3d::shape::{Shape, ShapeType};
 
 use crate::parry::composite::scene::{self as parts, MovingShape};
 use crate::parry::dispatcher::IsaGjkDispatcher;
-use crate::parry::scene::{cast, contact, separation as scene};
+use crate::parry::scene::{cast, contact, nonlinear, separation as scene};
 
 impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
     fn intersection_test(
@@ -47,7 +47,14 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
     ) -> Result<Option<Contact>, Unsupported> {
         contact::contact(pos12, g1, g2, prediction)
             .or_else(|_| parts::contact(self, pos12, g1, g2, prediction))
-            .or_else(|_| self.fallback.contact(pos12, g1, g2, prediction))
+            .or_else(|_| match g2.shape_type() {
+                // Parry takes the pose for that of the half-space.
+                ShapeType::HalfSpace => self
+                    .fallback
+                    .contact(&pos12.inverse(), g2, g1, prediction)
+                    .map(|contact| contact.map(Contact::flipped)),
+                _ => self.fallback.contact(pos12, g1, g2, prediction),
+            })
     }
 
     fn closest_points(
@@ -90,6 +97,8 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let movers =
             [(motion1, g1), (motion2, g2)].map(|(motion, shape)| MovingShape { motion, shape });
-        parts::cast_shapes_nonlinear(self, movers, [start_time, end_time], stop_at_penetration)
+        let times = [start_time, end_time];
+        nonlinear::cast_shapes(movers, times, stop_at_penetration)
+            .or_else(|_| parts::cast_shapes_nonlinear(self, movers, times, stop_at_penetration))
     }
 }

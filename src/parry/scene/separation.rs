@@ -1,4 +1,4 @@
-//! Queries without memory: distance, closest points and intersection of hulls.
+//! Queries without memory: distance, closest points and intersection of convex shapes.
 //!
 //! Only `contact` needs the depth of an overlap; these queries end with GJK. For all of them, shapes touch if
 //! they are at most [`MIN_DIRECTED_DISTANCE`](crate::tolerance::MIN_DIRECTED_DISTANCE) apart.
@@ -12,6 +12,7 @@ use crate::parry::convert::HalfSpace;
 use crate::parry::half_space;
 use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
 use crate::parry::scene::caller::{CallerProximity, NearestPoints};
+use crate::parry::scene::convex;
 use crate::parry::workspace::Workspace;
 use crate::query::{Distance, Query};
 use crate::stats::Cost;
@@ -89,23 +90,53 @@ fn separation(
         pos12,
         max_distance,
     };
-    pair::visit(shape_1, shape_2, query)
+    pair::visit(shape_1, shape_2, query).or_else(|_| {
+        convex::visit_inexact([shape_1, shape_2], |pair, workspace| {
+            query.separation(pair, GJK_CURVED_GAP, workspace)
+        })
+    })
 }
 
+/// What lies between the cores of two shapes, which may have borders.
+pub(super) enum CoreSeparation {
+    /// Nothing, up to rounding.
+    Overlapping,
+    /// A gap, and where it is narrowest. Borders may overlap there.
+    Within(CallerProximity),
+    /// More than was asked about.
+    Beyond,
+}
+
+#[derive(Clone, Copy)]
 pub(super) struct SeparationQuery<'a> {
     pub pos12: &'a Pose,
     pub max_distance: Real,
 }
 
 impl SeparationQuery<'_> {
-    /// The separation of a hull and any convex shape. GJK's bounds may differ by `gap`, relative to their
-    /// size.
-    pub fn separation<B: Support>(
+    /// The separation of any two convex shapes. GJK's bounds may differ by `gap`, relative to their size.
+    pub fn separation<A: Support, B: Support>(
         &self,
-        pair: &Pair<'_, B>,
+        pair: &Pair<'_, B, A>,
         gap: f64,
         workspace: &mut Workspace,
     ) -> Result<Separation, Unsupported> {
+        let size = pair.hull.radius() + pair.other.radius();
+        let touching = pair.touching(size) + gap * size;
+        Ok(match self.of_cores(pair, gap, workspace)? {
+            CoreSeparation::Overlapping => Separation::Overlapping,
+            CoreSeparation::Within(near) => Separation::of(near, touching),
+            CoreSeparation::Beyond => Separation::Beyond,
+        })
+    }
+
+    /// The same without regard to borders that overlap.
+    pub fn of_cores<A: Support, B: Support>(
+        &self,
+        pair: &Pair<'_, B, A>,
+        gap: f64,
+        workspace: &mut Workspace,
+    ) -> Result<CoreSeparation, Unsupported> {
         let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
         // Within this gap GJK cannot tell. There, too, they touch, for all queries.
@@ -115,9 +146,9 @@ impl SeparationQuery<'_> {
         let found = Query::new(&cso, max_distance, &mut workspace.epa, &mut Cost::default())
             .run_into(Distance { gap }, &mut sink);
         Ok(match (found, sink.nearest) {
-            (None, _) => Separation::Overlapping,
-            (_, None) => Separation::Beyond,
-            (_, Some(near)) => Separation::of(near, pair.touching(cso.size()) + slack),
+            (None, _) => CoreSeparation::Overlapping,
+            (_, None) => CoreSeparation::Beyond,
+            (_, Some(near)) => CoreSeparation::Within(near),
         })
     }
 }
