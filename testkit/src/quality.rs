@@ -142,7 +142,7 @@ pub fn quantile(mut values: Vec<f64>, share: f64) -> f64 {
 }
 
 /// The true overlaps of all pairs with contacts.
-fn overlaps(world: &World) -> impl Iterator<Item = f64> {
+pub(crate) fn overlaps(world: &World) -> impl Iterator<Item = f64> {
     let colliders = &world.physics.colliders;
     let pairs = world.physics.narrow_phase.contact_pairs();
     let touching = pairs.filter(|pair| pair.has_any_active_contact());

@@ -2,6 +2,7 @@
 //! reports the cost of each: `cargo run --release -p compare -- --help`.
 
 mod chart;
+mod curved;
 mod files;
 mod measure;
 mod options;
@@ -19,6 +20,7 @@ use std::process::ExitCode;
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 
+use curved::Curved;
 use options::Options;
 use report::Report;
 use rest::Rest;
@@ -27,6 +29,7 @@ use sweep::Sweep;
 fn main() -> ExitCode {
     let options = Options::parse();
     let outcome = match options.sweep {
+        _ if options.curved.is_some() => curved(&options),
         None if options.until_asleep => until_asleep(&options),
         None => compare(&options),
         Some(options::Sweep::Vertices) => sweep(&options),
@@ -105,6 +108,20 @@ fn until_asleep(options: &Options) -> Result<(), Box<dyn Error>> {
         chart::awake(path, &rest)?;
     }
     print(&rest)
+}
+
+fn curved(options: &Options) -> Result<(), Box<dyn Error>> {
+    let scenes = options.curved_scenes()?;
+    let outputs = Outputs::create(options)?;
+    let steps: usize = scenes.iter().map(|scene| 2 * scene.steps()).sum();
+    let progress = progress_bar(options, steps as u64 * u64::from(options.seeds));
+    let figures = Curved::run(&scenes, options.seed, options.seeds, &progress);
+    progress.finish_and_clear();
+
+    if let Some(file) = outputs.json {
+        files::write_json(file, &figures)?;
+    }
+    print(&figures)
 }
 
 /// The requested files.

@@ -7,7 +7,7 @@ use clap::{Parser, ValueEnum, value_parser};
 use rapier3d::prelude::Real;
 
 use crate::measure::RunLength;
-use testkit::scenes::{HullSource, Hulls, Scene, SceneParams};
+use testkit::scenes::{CurvedScene, HullSource, Hulls, Scene, SceneParams};
 
 /// How long a world is watched until its bodies sleep: most need two to six seconds.
 const SECONDS_UNTIL_ASLEEP: u32 = 12;
@@ -68,7 +68,7 @@ pub struct Options {
 
     /// Seed of shapes and starting poses
     #[arg(long, default_value_t = 1)]
-    seed: u64,
+    pub seed: u64,
 
     /// Whether rapier may keep the contacts of pairs that hardly moved
     #[arg(long, value_enum, default_value_t = Switch::On)]
@@ -84,8 +84,15 @@ pub struct Options {
     #[arg(long, conflicts_with_all = ["sweep", "verify", "warmup", "repeat"])]
     pub until_asleep: bool,
 
-    /// How many seeds to run with --until-asleep, from --seed on
-    #[arg(long, requires = "until_asleep", default_value_t = 1, value_parser = value_parser!(u32).range(1..=1000))]
+    /// Measure how cylinders, cones and capsules lie, stand and roll instead, with either dispatcher:
+    /// capsule-logs, logs, cones, coins, barrels, tall-barrels, roll, long-roll, mesh-roll, waves,
+    /// thin-floor or heap; all of them if none is named
+    #[arg(long, value_name = "SCENE", num_args = 0..=1, default_missing_value = "all",
+        conflicts_with_all = ["sweep", "verify", "warmup", "repeat", "until_asleep", "csv", "chart"])]
+    pub curved: Option<String>,
+
+    /// How many seeds to run with --until-asleep or --curved, from --seed on
+    #[arg(long, default_value_t = 1, value_parser = value_parser!(u32).range(1..=1000))]
     pub seeds: u32,
 
     /// Give the world of isa-gjk `HullShape` colliders; the default one keeps plain hulls
@@ -201,6 +208,18 @@ impl Options {
             can_sleep: self.sleep || self.until_asleep || self.scene == Scene::Asleep,
             ..params
         })
+    }
+
+    /// The scenes of `--curved`.
+    pub fn curved_scenes(&self) -> Result<Vec<CurvedScene>, String> {
+        let wanted = self.curved.as_deref().unwrap_or("all");
+        let is_wanted = |scene: &CurvedScene| wanted == "all" || wanted == scene.name();
+        let scenes: Vec<_> = CurvedScene::ALL.into_iter().filter(is_wanted).collect();
+        if scenes.is_empty() {
+            let names = CurvedScene::ALL.map(CurvedScene::name).join(", ");
+            return Err(format!("choose one of {names}"));
+        }
+        Ok(scenes)
     }
 
     /// How long to run.

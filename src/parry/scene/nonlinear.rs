@@ -9,6 +9,7 @@ use parry3d::shape::PolygonalFeatureMap;
 
 use super::motion::{Course, Motion};
 use crate::parry::composite::scene::MovingShape;
+use crate::curved::Body;
 use crate::parry::pair::{self, Pair, PairVisitor};
 use crate::parry::scene::caller::{CallerProximity, KernelFrame};
 use crate::parry::scene::cast::hit;
@@ -70,7 +71,7 @@ impl PairVisitor for NonlinearCast {
         self.run(pair, GJK_GAP_OF_SIZE, workspace)
     }
 
-    fn visit_curved<B: Support>(
+    fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
         _: &dyn PolygonalFeatureMap,

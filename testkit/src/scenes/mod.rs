@@ -2,7 +2,9 @@
 
 mod build;
 mod containers;
+mod curved;
 mod families;
+mod figures;
 mod filler;
 mod flat;
 pub mod hulls;
@@ -16,6 +18,8 @@ use std::str::FromStr;
 use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::{Real, SharedShape};
 
+pub use curved::CurvedScene;
+pub use figures::{Figure, Watched};
 pub use world::World;
 
 /// What happens in a world.
