@@ -15,7 +15,7 @@ use crate::parry::workspace::{ThreadWorkspace, Workspace};
 use crate::pose::{RelativePose, ValidPose};
 use crate::primitive::Ball;
 use crate::stats::Left;
-use crate::support::{Cso, Polytope};
+use crate::support::{Cso, Polytope, Support};
 use crate::tolerance::MIN_DIRECTED_DISTANCE;
 
 /// A hull and another shape, as the kernels see a pair: in the frame of the hull. Scene queries have pairs

@@ -6,7 +6,6 @@ use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus, Unsupporte
 use parry3d::shape::{PolygonalFeatureMap, Shape};
 
 use crate::curved::Body;
-use crate::hull::Hull;
 use crate::parry::pair::{self, Pair, PairVisitor};
 use crate::parry::scene::caller::{CallerProximity, KernelFrame};
 use crate::parry::scene::convex;

@@ -8,8 +8,8 @@ use parry3d::query::{ShapeCastHit, ShapeCastStatus, Unsupported};
 use parry3d::shape::PolygonalFeatureMap;
 
 use super::motion::{Course, Motion};
-use crate::parry::composite::scene::MovingShape;
 use crate::curved::Body;
+use crate::parry::composite::scene::MovingShape;
 use crate::parry::pair::{self, Pair, PairVisitor};
 use crate::parry::scene::caller::{CallerProximity, KernelFrame};
 use crate::parry::scene::cast::hit;

@@ -7,8 +7,8 @@ use isa_gjk::IsaGjkDispatcher;
 use oorandom::Rand32;
 use rapier3d::prelude::*;
 
-use super::build::{GAP, square_cell};
 use super::containers;
+use super::filler::{GAP, square_cell};
 use super::world::World;
 
 /// Metres per second of what rolls.
