@@ -84,3 +84,14 @@ pub(crate) const FIRST_STEP: f64 = 0.02;
 /// Between the bounds of a coarse search, as a share of the smaller radius: near enough to know which
 /// pieces of surface are in contact. They give the answer then.
 pub(crate) const COARSE_GAP: f64 = 0.02;
+
+/// GJK's gap in a cast of turning curved shapes: a part of the gap at which it ends, which is then known well
+/// enough.
+pub(crate) const CURVED_IMPACT_GAP: f64 = crate::tolerance::IMPACT_GAP / 4.0;
+
+/// GJK's gap in a cast of turning shapes that are far apart, relative to the separation that was proved last: a
+/// normal that is off by so little proves nearly as much.
+pub(crate) const ROUGH_GAP: f64 = 0.01;
+
+/// Of a gap: when the proof of a normal leaves less of it, such a cast goes on from there with a new normal.
+pub(crate) const USED_UP: f64 = 0.05;

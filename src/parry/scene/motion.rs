@@ -13,12 +13,10 @@ use crate::parry::pair::Pair;
 use crate::pose::{RelativePose, ValidPose};
 use crate::stats::Cost;
 use crate::support::Support;
+use crate::tuning::USED_UP;
 
 /// Steps towards the end of the time that a normal proves. More prove little more.
 const REFINEMENTS: usize = 4;
-/// Of a gap: when the proof leaves less of it, the search goes on from there with a new normal.
-const USED_UP: f64 = 0.05;
-
 /// A centre on a straight line, and a shape that turns about it. In the world's frame, but for `local_center`.
 #[derive(Clone, Copy)]
 pub(super) struct Motion {

@@ -20,16 +20,10 @@ use crate::query::{Distance, PairMemory, Proximity, Query, SeparatingAxis, Sink}
 use crate::stats::Cost;
 use crate::support::{Polytope, Support, VertexId};
 use crate::tolerance::{AT_START, GJK_GAP_OF_SIZE, IMPACT_GAP};
+use crate::tuning::{CURVED_IMPACT_GAP, ROUGH_GAP};
 
 /// A body that spins over another within a thousandth of its size takes a few hundred.
 const MAX_ADVANCES: usize = 4096;
-
-/// GJK's while the shapes are far apart, relative to the separation that was proved last: a normal that is off
-/// by so little proves nearly as much.
-const ROUGH_GAP: f64 = 0.01;
-
-/// GJK's on curved surfaces: of the gap at which an impact ends.
-const CURVED_GAP: f64 = IMPACT_GAP / 4.0;
 
 /// Not supported are shapes that touch at the start, unless the cast is to stop there: what is met then is
 /// parry's to say.
@@ -46,7 +40,7 @@ pub(crate) fn cast_shapes(
     };
     pair::visit(shape_1, shape_2, cast).or_else(|_| {
         convex::visit([shape_1, shape_2], |pair, workspace| {
-            cast.run(pair, CURVED_GAP, workspace)
+            cast.run(pair, CURVED_IMPACT_GAP, workspace)
         })
     })
 }
@@ -77,7 +71,7 @@ impl PairVisitor for NonlinearCast {
         _: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
-        self.run(pair, CURVED_GAP, workspace)
+        self.run(pair, CURVED_IMPACT_GAP, workspace)
     }
 }
 
@@ -92,17 +86,11 @@ impl NonlinearCast {
         let [Some(first), Some(second)] = self.motions else {
             return Ok(None);
         };
-        let [start, end] = self.times.map(|time| f64::from(time.min(Real::MAX)));
         let course = Course::new(pair, pair.order.to_kernel([first, second]));
-        let Some([enter, leave]) = course.within_reach() else {
+        let Some([start, enter, end]) = self.span(&course) else {
             return Ok(None);
         };
-        let end = end.min(leave).max(start);
-        let mut time = start.max(enter);
-        // Also where a time is no number.
-        if !start.is_finite() || time > end {
-            return Ok(None);
-        }
+        let mut time = enter;
         let smaller = pair.radii().into_iter().fold(f64::INFINITY, f64::min);
         let touching = IMPACT_GAP * smaller;
         let least_gap = gap * smaller;
@@ -115,25 +103,24 @@ impl NonlinearCast {
             let near = search.run(pair, &pose, workspace).ok_or(Unsupported)?;
             let moment = course.moment(time, near.normal);
             let separation = course.separation(&moment);
-            let is_rough = search.gap > least_gap;
-            search = Search {
-                axis: Some(near.normal),
-                gap: if separation > touching {
-                    least_gap.max(ROUGH_GAP * separation)
-                } else {
-                    least_gap
-                },
-            };
-            if is_rough && separation <= touching {
-                continue;
-            }
-            let ahead = if separation > touching {
-                match course.free_time(&moment, end - time, touching) {
-                    Some(ahead) => ahead,
-                    None => return Ok(None),
-                }
+            let is_apart = separation > touching;
+            let was_rough = search.gap > least_gap;
+            let rough_gap = if is_apart {
+                ROUGH_GAP * separation
             } else {
                 0.0
+            };
+            search = Search {
+                axis: Some(near.normal),
+                gap: least_gap.max(rough_gap),
+            };
+            if was_rough && !is_apart {
+                continue;
+            }
+            let ahead = match course.free_time(&moment, end - time, touching) {
+                Some(ahead) if is_apart => ahead,
+                None if is_apart => return Ok(None),
+                _ => 0.0,
             };
             if time + ahead > time && advance < MAX_ADVANCES {
                 time += ahead;
@@ -143,19 +130,37 @@ impl NonlinearCast {
                 break;
             }
             let status = match separation {
-                _ if separation > touching => ShapeCastStatus::OutOfIterations,
+                _ if is_apart => ShapeCastStatus::OutOfIterations,
                 _ if separation < 0.0 => ShapeCastStatus::PenetratingOrWithinTargetDist,
                 _ => ShapeCastStatus::Converged,
             };
             let frame = KernelFrame::new(pair, &pose);
-            let near = CallerProximity::of_proximity(&near, &frame);
-            let time_of_impact = not_after(time).max(self.times[0]);
-            return Ok(Some(ShapeCastHit {
-                time_of_impact,
-                ..hit(time, &near, status)
-            }));
+            return Ok(Some(self.impact(&near, &frame, time, status)));
         }
         Err(Unsupported)
+    }
+
+    fn impact(
+        &self,
+        near: &Proximity,
+        frame: &KernelFrame<'_>,
+        time: f64,
+        status: ShapeCastStatus,
+    ) -> ShapeCastHit {
+        let near = CallerProximity::of_proximity(near, frame);
+        ShapeCastHit {
+            time_of_impact: not_after(time).max(self.times[0]),
+            ..hit(time, &near, status)
+        }
+    }
+
+    /// The start, and from when to when the shapes are within reach. `None` if they never are, also where a time
+    /// is no number.
+    fn span<A: Support, B: Support>(&self, course: &Course<'_, A, B>) -> Option<[f64; 3]> {
+        let [start, end] = self.times.map(|time| f64::from(time.min(Real::MAX)));
+        let [enter, leave] = course.within_reach()?;
+        let [enter, end] = [start.max(enter), end.min(leave).max(start)];
+        (start.is_finite() && enter <= end).then_some([start, enter, end])
     }
 }
 
@@ -177,7 +182,7 @@ impl Search {
     ) -> Option<Proximity> {
         let cso = pair.cso(pose);
         let gap = self.gap / cso.size();
-        let mut sink = Nearest {
+        let mut sink = NearestCores {
             axis: self.axis,
             found: None,
         };
@@ -192,12 +197,12 @@ impl Search {
     }
 }
 
-struct Nearest {
+struct NearestCores {
     axis: Option<DVec3>,
     found: Option<Proximity>,
 }
 
-impl Sink for Nearest {
+impl Sink for NearestCores {
     fn memory(&mut self) -> PairMemory {
         match self.axis {
             Some(axis) => PairMemory::Axis(axis, [VertexId::default(); 2]),
