@@ -95,3 +95,7 @@ pub(crate) const ROUGH_GAP: f64 = 0.01;
 
 /// Of a gap: when the proof of a normal leaves less of it, such a cast goes on from there with a new normal.
 pub(crate) const USED_UP: f64 = 0.05;
+
+/// An edge or a side is looked at if the sine of its angle to the normal at hand is off by less than this: the
+/// normals of coarse searches are off by up to a fifth.
+pub(crate) const NEAR_RULING: f64 = 0.3;

@@ -9,6 +9,30 @@ use super::place::Spot;
 use crate::tolerance::{LEVEL, ON_OUTLINE};
 use crate::tuning::SMALL_SHIFT;
 
+/// Cosines and sines of eighths of a turn.
+const SECTORS: [[f64; 2]; 8] = {
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    [
+        [1.0, 0.0],
+        [half, half],
+        [0.0, 1.0],
+        [-half, half],
+        [-1.0, 0.0],
+        [-half, -half],
+        [0.0, -1.0],
+        [half, -half],
+    ]
+};
+
+/// The heights of a point that is on one of the two pieces.
+fn on_side(side: usize, other: f64) -> [f64; 2] {
+    if side == 0 {
+        [0.0, other]
+    } else {
+        [other, 0.0]
+    }
+}
+
 impl Patch {
     /// The direction in the plane of a flat side in which its contacts are deepest, and how much it
     /// leans over the other one.
@@ -36,38 +60,49 @@ impl Patch {
         let u = u.unwrap_or_else(|| flat.normal.any_orthonormal_vector());
         let v = flat.normal.cross(u);
         let rim = |sector: usize| {
-            let angle = std::f64::consts::FRAC_PI_4 * sector as f64;
-            center + (u * angle.cos() + v * angle.sin()) * radius
+            let [cos, sin] = SECTORS[sector];
+            center + (u * cos + v * sin) * radius
         };
+        let mut spots = [Spot::Inside; 2];
+        let mut push_sector = |patch: &mut Self, sector: usize, is_over: bool| {
+            spots[side] = Spot::Arc(sector);
+            let point = PiecePoint {
+                at: rim(sector),
+                spots,
+            };
+            match patch.flat(1 - side) {
+                Some(other) if is_over => {
+                    let height = other.height(point.at);
+                    patch.push(point, on_side(side, height));
+                }
+                _ => patch.push_over(side, point),
+            }
+        };
+        let is_over = self.is_whole_over(1 - side, center, radius);
         let before = self.places.len();
-        let spots = |spot| {
-            let mut spots = [Spot::Inside; 2];
-            spots[side] = spot;
-            spots
-        };
-        let push_sector = |patch: &mut Self, sector: usize| {
-            patch.push_over(
-                side,
-                PiecePoint {
-                    at: rim(sector),
-                    spots: spots(Spot::Arc(sector)),
-                },
-            );
-        };
         for sector in [0, 2, 4, 6] {
-            push_sector(self, sector);
+            push_sector(self, sector, is_over);
         }
-        let is_whole = self.places.len() == before + 4
-            && [1, 3, 5, 7]
-                .iter()
-                .all(|&sector| self.height_over(1 - side, rim(sector)).is_some());
+        let between = [1, 3, 5, 7];
+        let is_on = |sector: usize| self.height_over(1 - side, rim(sector)).is_some();
+        let is_whole = is_over || self.places.len() == before + 4 && between.into_iter().all(is_on);
         if is_whole || !with_corners {
             return;
         }
-        for sector in [1, 3, 5, 7] {
-            push_sector(self, sector);
+        for sector in between {
+            push_sector(self, sector, false);
         }
         self.add_polygon_over_disc(1 - side, center, radius);
+    }
+
+    /// Whether a whole disc is over a flat side: seen along the normal its radius does not grow by more than
+    /// both sides lean.
+    fn is_whole_over(&self, side: usize, center: DVec3, radius: f64) -> bool {
+        self.flat(side).is_some_and(|flat| {
+            let lean = flat.side.normal.dot(self.normal()).abs();
+            let inset = flat.inset(center).unwrap_or(0.0);
+            inset * lean * lean * (1.0 - ON_OUTLINE) > radius * (1.0 + ON_OUTLINE)
+        })
     }
 
     /// The corners of a polygon over a disc, and where its sides cross the circle.

@@ -7,7 +7,7 @@ use super::piece::across;
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex};
 use crate::tolerance::{PARALLEL_AXES, SETTLED_ANGLE};
-use crate::tuning::FIRST_STEP;
+use crate::tuning::{FIRST_STEP, NEAR_RULING};
 
 /// A normal, the vertex of the difference that is extreme along it, and how far apart the shapes are.
 #[derive(Clone, Copy, Debug)]
@@ -66,8 +66,9 @@ pub(super) fn ruled<A: Body, B: Body>(
     cost: &mut Cost,
 ) -> Option<NormalSeparation> {
     let mut best: Option<NormalSeparation> = None;
-    for first in cso.shape_1.rulings(at.normal, at.extreme.ids[0]) {
-        for second in rulings_2(cso, at) {
+    let of_first = cso.shape_1.rulings(at.normal, at.extreme.ids[0]);
+    for first in of_first.filter(|ruling| ruling.is_near(at.normal)) {
+        for second in rulings_2(cso, at).filter(|ruling| ruling.is_near(at.normal)) {
             if let Some(normal) = suiting_both(&first, &second, at.normal) {
                 let found = NormalSeparation::along(cso, normal, &at.extreme, cost);
                 best = Some(best.map_or(found, |best| best.or(found)));
@@ -75,6 +76,13 @@ pub(super) fn ruled<A: Body, B: Body>(
         }
     }
     best
+}
+
+impl Ruling {
+    /// Whether a normal nearly suits it.
+    fn is_near(&self, normal: DVec3) -> bool {
+        (self.axis.dot(normal) - self.sine).abs() < NEAR_RULING
+    }
 }
 
 /// The rulings of shape 2 in frame 1, as the contact normal sees them.
@@ -116,7 +124,8 @@ pub(super) fn along_rulings<A: Body, B: Body>(
 ) -> Option<NormalSeparation> {
     let mut best: Option<NormalSeparation> = None;
     let of_first = cso.shape_1.rulings(at.normal, at.extreme.ids[0]);
-    for ruling in of_first.chain(rulings_2(cso, at)) {
+    let rulings = of_first.chain(rulings_2(cso, at));
+    for ruling in rulings.filter(|ruling| ruling.is_near(at.normal)) {
         if let Some(found) = along_ruling(cso, &ruling, at, cost) {
             best = Some(best.map_or(found, |best| best.or(found)));
         }

@@ -1,10 +1,11 @@
-//! Pairs without a hull, one of whose shapes is a cylinder or a cone.
+//! Pairs without a hull: cylinders and cones with other shapes, and two capsules.
 
 use parry3d::math::Real;
 use parry3d::query::Unsupported;
 use parry3d::shape::{Shape, ShapeType, TypedShape};
 
 use crate::curved::Body;
+use crate::parry::capsules::update_capsules;
 use crate::parry::convert::{self, CurvedShape};
 use crate::parry::manifold::{CurvedPair, UpdateManifold};
 use crate::parry::order::PairOrder;
@@ -20,14 +21,17 @@ pub(crate) fn is_curved(shape: &dyn Shape) -> bool {
 }
 
 /// Brings a manifold up to date; pairs of other shapes are not supported.
-pub(crate) fn update_curved<M: Default, C: Default + Copy>(
+pub(crate) fn update_without_hull<M: Default, C: Default + Copy>(
     [shape_1, shape_2]: [&dyn Shape; 2],
     update: UpdateManifold<'_, M, C>,
 ) -> Result<(), Unsupported> {
     let (order, curved, other) = match [is_curved(shape_1), is_curved(shape_2)] {
         [_, true] => (PairOrder::Given, shape_2, shape_1),
         [true, false] => (PairOrder::Reversed, shape_1, shape_2),
-        [false, false] => return Err(Unsupported),
+        [false, false] => {
+            let shapes = [shape_1, shape_2];
+            return update_capsules(update.pos12, shapes, update.prediction, update.manifold);
+        }
     };
     let mut pair = CurvedSecond { order, update };
     match curved.as_typed_shape() {

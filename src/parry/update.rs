@@ -4,9 +4,8 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, Unsupported};
 
 use crate::map_pair::map_pair;
-use crate::parry::capsules::update_capsules;
 use crate::parry::constraints::Constraints;
-use crate::parry::curved::update_curved;
+use crate::parry::curved::update_without_hull;
 use crate::parry::hull_cache::epoch::Epoch;
 use crate::parry::manifold::UpdateManifold;
 use crate::parry::operand::Operand;
@@ -115,9 +114,7 @@ impl<F> Updater<'_, F> {
                 return Ok(());
             }
             self.stats.record_left(pair::why_left(pos12, [g1, g2]));
-        } else if update_curved([g1, g2], update).is_ok()
-            || update_capsules(pos12, [g1, g2], prediction, manifold).is_ok()
-        {
+        } else if update_without_hull([g1, g2], update).is_ok() {
             return Ok(());
         } else {
             self.stats.record_left(Left::NoHull);
