@@ -18,5 +18,6 @@ mod part_seams;
 pub mod recording;
 mod scaled;
 mod scene;
+mod seams_cache;
 mod update;
 mod workspace;

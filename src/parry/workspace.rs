@@ -6,9 +6,9 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::curved::CurvedScratch;
 use crate::epa::{EpaScratch, PolytopeCache};
 use crate::manifold::ClipScratch;
-use crate::parry::composite::seams::SeamsCache;
 use crate::parry::hull_cache::HullCache;
 use crate::parry::hull_cache::registry::PreparedHull;
+use crate::parry::seams_cache::SeamsCache;
 
 /// What a thread keeps from query to query: prepared hulls, seams of compounds, and memory to work in.
 #[derive(Default)]
