@@ -91,50 +91,39 @@ impl NonlinearCast {
             return Ok(None);
         };
         let mut time = enter;
-        let smaller = pair.radii().into_iter().fold(f64::INFINITY, f64::min);
+        let [radius_1, radius_2] = pair.radii();
+        let smaller = radius_1.min(radius_2);
         let touching = IMPACT_GAP * smaller;
-        let least_gap = gap * smaller;
+        let fine_gap = gap * smaller;
         let mut search = Search {
             axis: None,
-            gap: least_gap,
+            gap: fine_gap,
         };
         for advance in 0.. {
             let pose = course.pose_at(time);
             let near = search.run(pair, &pose, workspace).ok_or(Unsupported)?;
             let moment = course.moment(time, near.normal);
             let separation = course.separation(&moment);
-            let is_apart = separation > touching;
-            let was_rough = search.gap > least_gap;
-            let rough_gap = if is_apart {
-                ROUGH_GAP * separation
-            } else {
-                0.0
-            };
-            search = Search {
-                axis: Some(near.normal),
-                gap: least_gap.max(rough_gap),
-            };
-            if was_rough && !is_apart {
-                continue;
-            }
-            let ahead = match course.free_time(&moment, end - time, touching) {
-                Some(ahead) if is_apart => ahead,
-                None if is_apart => return Ok(None),
-                _ => 0.0,
-            };
-            if time + ahead > time && advance < MAX_ADVANCES {
-                time += ahead;
+            let was_rough = search.gap > fine_gap;
+            search.axis = Some(near.normal);
+            if separation > touching {
+                search.gap = fine_gap.max(ROUGH_GAP * separation);
+                let Some(ahead) = course.free_time(&moment, end - time, touching) else {
+                    return Ok(None);
+                };
+                if time + ahead > time && advance < MAX_ADVANCES {
+                    time += ahead;
+                    continue;
+                }
+            } else if was_rough {
+                search.gap = fine_gap;
                 continue;
             }
             if time - start < AT_START && !self.stop_at_penetration {
                 break;
             }
-            let status = match separation {
-                _ if is_apart => ShapeCastStatus::OutOfIterations,
-                _ if separation < 0.0 => ShapeCastStatus::PenetratingOrWithinTargetDist,
-                _ => ShapeCastStatus::Converged,
-            };
             let frame = KernelFrame::new(pair, &pose);
+            let status = status(separation, touching);
             return Ok(Some(self.impact(&near, &frame, time, status)));
         }
         Err(Unsupported)
@@ -161,6 +150,17 @@ impl NonlinearCast {
         let [enter, leave] = course.within_reach()?;
         let [enter, end] = [start.max(enter), end.min(leave).max(start)];
         (start.is_finite() && enter <= end).then_some([start, enter, end])
+    }
+}
+
+/// How a cast ended at a separation.
+fn status(separation: f64, touching: f64) -> ShapeCastStatus {
+    if separation > touching {
+        ShapeCastStatus::OutOfIterations
+    } else if separation < 0.0 {
+        ShapeCastStatus::PenetratingOrWithinTargetDist
+    } else {
+        ShapeCastStatus::Converged
     }
 }
 
