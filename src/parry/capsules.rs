@@ -16,16 +16,8 @@ pub(crate) fn update_capsules<M, C: Default + Copy>(
     prediction: Real,
     manifold: &mut ContactManifold<M, C>,
 ) -> Result<(), Unsupported> {
-    let [Some(first), Some(second)] = map_pair(shapes, plain_capsule) else {
-        return Err(Unsupported);
-    };
-    let pose = RelativePose::from(valid_pose(pos12)?);
-    let second = Capsule {
-        a: pose.point_to_1(second.a),
-        b: pose.point_to_1(second.b),
-        radius: second.radius,
-    };
-    let Some(contacts) = CapsuleContacts::new([first, second], prediction.into()) else {
+    let (pose, capsules) = pair_in_frame_1(pos12, shapes)?;
+    let Some(contacts) = CapsuleContacts::new(capsules, prediction.into()) else {
         manifold.clear();
         return Ok(());
     };
@@ -69,8 +61,25 @@ fn inherited<C: Default + Copy>(contacts: &[TrackedContact<C>], place: Place) ->
         .map_or_else(C::default, |old| old.data)
 }
 
+/// Two capsules in frame 1. Other shapes are not supported.
+pub(crate) fn pair_in_frame_1(
+    pos12: &Pose,
+    shapes: [&dyn Shape; 2],
+) -> Result<(RelativePose, [Capsule; 2]), Unsupported> {
+    let [Some(first), Some(second)] = map_pair(shapes, plain_capsule) else {
+        return Err(Unsupported);
+    };
+    let pose = RelativePose::from(valid_pose(pos12)?);
+    let second = Capsule {
+        a: pose.point_to_1(second.a),
+        b: pose.point_to_1(second.b),
+        radius: second.radius,
+    };
+    Ok((pose, [first, second]))
+}
+
 /// The shape as a capsule, if it is finite and has a radius. A user's own shape may only look like a capsule.
-pub(crate) fn plain_capsule(shape: &dyn Shape) -> Option<Capsule> {
+fn plain_capsule(shape: &dyn Shape) -> Option<Capsule> {
     let capsule: &ParryCapsule = shape.as_shape()?;
     let [a, b] = [capsule.segment.a, capsule.segment.b].map(|p| p.as_dvec3());
     let radius = f64::from(capsule.radius);

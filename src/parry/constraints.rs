@@ -112,15 +112,10 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
         let rotation = self.pos12.rotation;
         let outer = self.constraints[side].part()?.outer_normals();
         let ways = outer.map(|normal| {
-            let other = if side == 0 {
-                rotation.inverse() * -normal
-            } else {
-                rotation * -normal
-            };
             let normals = if side == 0 {
-                [normal, other]
+                [normal, rotation.inverse() * -normal]
             } else {
-                [other, normal]
+                [rotation * -normal, normal]
             };
             let [along, _] = self.order.to_kernel(normals);
             let along = along.as_dvec3();

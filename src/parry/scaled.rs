@@ -19,8 +19,7 @@ pub(crate) struct Scale(Real);
 impl Scale {
     /// The power of two that scales the smaller of two radii to between one and two.
     pub fn of<B: Support>(pair: &Pair<'_, B>) -> Self {
-        let radius_1 = pair.hull.radius() + pair.border_radii[0];
-        let radius_2 = pair.other.radius() + pair.border_radii[1];
+        let [radius_1, radius_2] = pair.radii();
         let wanted = radius_1.min(radius_2).log2().floor();
         let possible = (radius_1.max(radius_2) / LARGEST_SCALED).log2().ceil();
         // Both the factor and its inverse are normal f32 numbers.

@@ -4,11 +4,8 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::{Contact, Unsupported};
 use parry3d::shape::Shape;
 
-use crate::manifold::capsules::{Capsule, CapsuleContacts};
-use crate::map_pair::map_pair;
-use crate::parry::capsules::plain_capsule;
-use crate::parry::pair::valid_pose;
-use crate::pose::RelativePose;
+use crate::manifold::capsules::CapsuleContacts;
+use crate::parry::capsules::pair_in_frame_1;
 
 /// The deepest contact of capsules that overlap or are at most `prediction` apart; other shapes are not
 /// supported.
@@ -17,16 +14,8 @@ pub(super) fn contact(
     shapes: [&dyn Shape; 2],
     prediction: Real,
 ) -> Result<Option<Contact>, Unsupported> {
-    let [Some(first), Some(second)] = map_pair(shapes, plain_capsule) else {
-        return Err(Unsupported);
-    };
-    let pose = RelativePose::from(valid_pose(pos12)?);
-    let second = Capsule {
-        a: pose.point_to_1(second.a),
-        b: pose.point_to_1(second.b),
-        radius: second.radius,
-    };
-    let Some(contacts) = CapsuleContacts::new([first, second], prediction.into()) else {
+    let (pose, capsules) = pair_in_frame_1(pos12, shapes)?;
+    let Some(contacts) = CapsuleContacts::new(capsules, prediction.into()) else {
         return Ok(None);
     };
     let deepest = contacts
