@@ -82,6 +82,7 @@ const VERSION: &str = "1";
 /// In the place of a suspicion.
 const NOTHING: &str = "nothing";
 const CORRECTED: &str = "corrected";
+const POSE: &str = "pose";
 
 /// Two convex shapes, and an update of their manifold.
 #[derive(Clone)]
@@ -187,7 +188,7 @@ fn read_pair(
     let has_corrected_normals = words.take(CORRECTED);
     words.end()?;
     let shapes = [shape::read(lines)?, shape::read(lines)?];
-    let mut words = lines.after("pose")?;
+    let mut words = lines.after(POSE)?;
     let pos12 = Pose::from_parts(words.vector()?, Rotation::from_array(words.numbers()?));
     words.end()?;
     let mut words = lines.after("prediction")?;
@@ -223,7 +224,7 @@ fn write(pair: &PairView<'_>, suspicion: Option<Suspicion>) -> Option<String> {
         ..
     } = pair.pos12;
     let pose = [&translation.to_array()[..], &rotation.to_array()].concat();
-    lines::push("pose", &pose, &mut text);
+    lines::push(POSE, &pose, &mut text);
     lines::push("prediction", &[pair.prediction], &mut text);
     manifold::write("before", pair.before, &mut text);
     manifold::write("after", pair.after, &mut text);

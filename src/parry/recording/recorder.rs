@@ -1,22 +1,28 @@
 //! Who writes pairs down while a world runs.
 
+use std::collections::HashMap;
 use std::fmt;
 use std::fs::File;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::io::{self, Write};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::judge::judge;
-use super::{HEAD, PairView, VERSION, write};
+use super::{HEAD, POSE, PairView, VERSION, write};
 
+/// So many pairs of the same two shapes that look wrong for the same reason are written down: what looks wrong
+/// in one step mostly does so in the next.
+const ALIKE: u32 = 4;
 /// A recording ends with the pair that would make it longer than this.
 const DEFAULT_LIMIT: usize = 1 << 20;
 /// Then it ends with this comment.
 const FULL: &str = "\n# The limit was reached. Later pairs are missing.\n";
 
 /// Writes pairs to a file, for [`IsaGjkDispatcher::with_recorder`](crate::IsaGjkDispatcher::with_recorder):
-/// those whose contacts look wrong, unless it is told to write [all](Self::of_all_pairs).
+/// those whose contacts look wrong, unless it is told to write [all](Self::of_all_pairs). Of two shapes that
+/// look wrong for the same reason again and again, it writes the first few pairs.
 ///
 /// Judging a pair takes a query without memory, so steps take some times as long. A recording stops at
 /// 1 MiB, or at [another limit](Self::with_limit); it says so in its last line and in the log, and pairs
@@ -31,6 +37,8 @@ pub struct Recorder {
 
 struct State {
     out: Box<dyn Write + Send>,
+    /// How many pairs look alike, by a hash of their reason and shapes.
+    alike: HashMap<u64, u32>,
     summary: RecorderSummary,
 }
 
@@ -44,6 +52,8 @@ pub struct RecorderSummary {
     pub recorded: u64,
     /// Pairs that are missing in the file, because it cannot have their shapes: those of your own types.
     pub unknown_shapes: u64,
+    /// Pairs that look wrong and are missing in the file, because it has enough of their shapes and reason.
+    pub repeated: u64,
     /// Bytes in the file.
     pub bytes: usize,
     /// The file has reached its limit, and later pairs are missing.
@@ -77,7 +87,11 @@ impl Recorder {
             wants_all: false,
             limit: DEFAULT_LIMIT,
             is_open: AtomicBool::new(true),
-            state: Mutex::new(State { out, summary }),
+            state: Mutex::new(State {
+                out,
+                alike: HashMap::new(),
+                summary,
+            }),
         })
     }
 
@@ -123,6 +137,9 @@ impl Recorder {
         match text {
             None => {}
             Some(None) => state.summary.unknown_shapes += 1,
+            Some(Some(text)) if !self.wants_all && state.has_enough_like(&text) => {
+                state.summary.repeated += 1;
+            }
             Some(Some(text)) => state.append(&text, self.limit),
         }
         let RecorderSummary { is_full, error, .. } = &state.summary;
@@ -132,8 +149,18 @@ impl Recorder {
 }
 
 impl State {
+    /// Whether enough pairs of the same shapes and for the same reason are in the file. Both stand before the
+    /// pose.
+    fn has_enough_like(&mut self, pair: &str) -> bool {
+        let mut hasher = DefaultHasher::new();
+        pair.split(POSE).next().hash(&mut hasher);
+        let alike = self.alike.entry(hasher.finish()).or_default();
+        *alike += 1;
+        *alike > ALIKE
+    }
+
     fn append(&mut self, pair: &str, limit: usize) {
-        let Self { out, summary } = self;
+        let Self { out, summary, .. } = self;
         // Another thread may have ended it meanwhile.
         if summary.is_full || summary.error.is_some() {
             return;
@@ -166,5 +193,44 @@ impl fmt::Debug for Recorder {
             .field("limit", &self.limit)
             .field("summary", &self.summary())
             .finish_non_exhaustive()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use parry3d::math::{Pose, Real, Vector};
+    use parry3d::query::{ContactManifold, TrackedContact};
+    use parry3d::shape::{Cuboid, PackedFeatureId};
+
+    use super::*;
+
+    #[test]
+    fn what_looks_wrong_again_and_again_is_recorded_a_few_times() {
+        let recorder = Recorder::new(io::sink()).expect("it takes everything");
+        let id = PackedFeatureId::face(0);
+        let nowhere = TrackedContact::new(Vector::NAN, Vector::NAN, id, id, 0.0);
+        let after = ContactManifold {
+            points: [nowhere].into_iter().collect(),
+            ..ContactManifold::new()
+        };
+        let look = |half: Real, x: Real| {
+            let cuboid = Cuboid::new(Vector::splat(half));
+            recorder.look_at(&PairView {
+                shapes: [&cuboid, &cuboid],
+                pos12: &Pose::translation(x, 0.0, 0.0),
+                prediction: 0.0,
+                has_corrected_normals: false,
+                before: &ContactManifold::new(),
+                after: &after,
+            });
+            let RecorderSummary {
+                recorded, repeated, ..
+            } = recorder.summary();
+            [recorded, repeated]
+        };
+        let alike = u64::from(ALIKE);
+        let steps = (0..2 * ALIKE).map(|step| look(0.5, step as Real));
+        assert_eq!(steps.last(), Some([alike; 2]));
+        assert_eq!(look(0.6, 0.0), [alike + 1, alike], "another pair");
     }
 }
