@@ -258,10 +258,6 @@ const _: () = assert!(
     "the errors add up to more than the promise"
 );
 
-/// Pairs are scaled up to at most this radius for parry's searches: the squares of longer coordinates
-/// overflow f32.
-pub const LARGEST_SCALED: f64 = 1e15;
-
 /// Cores of capsules that are nearer than this share of the pair's size meet: the direction between their
 /// nearest points is mere rounding.
 pub const CAPSULE_TOUCH: f64 = 1e-12;

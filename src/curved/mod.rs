@@ -25,7 +25,8 @@ mod query;
 mod search;
 mod stationary;
 
-pub use body::Body;
+pub use body::{Body, Ruling};
 pub use contacts::contacts;
 pub use patch::{ContactPlace, Patch};
+pub use piece::Piece;
 pub use query::{CurvedAnswer, CurvedQuery, CurvedScratch, Hint};

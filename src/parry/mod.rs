@@ -16,7 +16,6 @@ mod order;
 mod pair;
 mod part_seams;
 pub mod recording;
-mod scaled;
 mod scene;
 mod seams_cache;
 mod update;

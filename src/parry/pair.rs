@@ -2,7 +2,7 @@
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::Unsupported;
-use parry3d::shape::{PolygonalFeatureMap, Shape, ShapeType, TypedShape};
+use parry3d::shape::{Shape, ShapeType, TypedShape};
 
 use crate::curved::Body;
 use crate::hull::Hull;
@@ -110,15 +110,13 @@ pub(crate) trait PairVisitor: Sized {
         Err(Unsupported)
     }
 
-    /// The other shape is a cylinder or a cone, which has no faces for our kernels. parry's routines use its
-    /// `features`.
+    /// The other shape is a cylinder or a cone.
     fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
-        features: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
-        let _ = (pair, features, workspace);
+        let _ = (pair, workspace);
         Err(Unsupported)
     }
 }
@@ -274,13 +272,13 @@ impl HullOperand<'_> {
     #[inline]
     fn curved<V: PairVisitor>(
         &self,
-        other: &(impl CurvedShape + PolygonalFeatureMap),
+        other: &impl CurvedShape,
         border_radius: Real,
         visitor: &mut V,
     ) -> Result<V::Answer, Unsupported> {
         let kernel = other.kernel().ok_or(Unsupported)?;
         self.with(&kernel, border_radius, |pair, workspace| {
-            visitor.visit_curved(pair, other, workspace)
+            visitor.visit_curved(pair, workspace)
         })
     }
 

@@ -11,7 +11,10 @@ use std::time::Duration;
 use glam::{DQuat, DVec3};
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Real, Rotation, Vector};
-use parry3d::query::{ClosestPoints, Contact, QueryDispatcher};
+use parry3d::query::details::ShapeCastOptions;
+use parry3d::query::{
+    ClosestPoints, Contact, ContactManifold, PersistentQueryDispatcher, QueryDispatcher,
+};
 use parry3d::shape::SharedShape;
 use testkit::cases::Hull;
 use testkit::generate::Rng;
@@ -19,6 +22,7 @@ use testkit::memory::{Manifold, Memory, cold_manifold};
 use testkit::oracle::{Solid, regret, signed_distance};
 use testkit::pose::ExactPose;
 use testkit::report::{Finding, Report};
+use testkit::shape_samples::{poses, shape_samples};
 
 /// Fails if `work` takes longer than any query may.
 fn soon<T: Send + 'static>(what: &str, work: impl FnOnce() -> T + Send + 'static) -> T {
@@ -425,5 +429,28 @@ fn tetrahedron(height: Real) -> Hull {
     Hull {
         solid: Solid::new(points.iter().map(|p| p.as_dvec3()).collect(), &faces),
         shape: SharedShape::convex_mesh(points, &faces).expect("a closed surface"),
+    }
+}
+
+/// Parry's routines for cells panic or overflow when they meet a shape without end.
+#[test]
+fn half_spaces_and_cells_are_left_unanswered() {
+    let samples = shape_samples();
+    let shape = |name| {
+        let sample = samples.iter().find(|sample| sample.name == name);
+        &*sample.expect("a sample").shape.0
+    };
+    let dispatcher = IsaGjkDispatcher::default();
+    let half_space = shape("half-space");
+    for cells in [shape("voxels"), shape("heightfield")] {
+        for pose in poses() {
+            for [a, b] in [[cells, half_space], [half_space, cells]] {
+                let way = -pose.translation;
+                let cast = dispatcher.cast_shapes(&pose, way, a, b, ShapeCastOptions::default());
+                assert!(cast.is_err(), "{cast:?}");
+                let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+                let _ = dispatcher.contact_manifolds(&pose, a, b, 0.1, &mut manifolds, &mut None);
+            }
+        }
     }
 }

@@ -1,5 +1,4 @@
-//! Hulls against cylinders and cones: how far apart they are is ours to say, with a proof; how deep
-//! they overlap is parry's, whose search asks our hull for its extreme vertices.
+//! Hulls against cylinders and cones: how far apart they are and how deep they overlap, with proofs.
 
 use glam::DVec3;
 use isa_gjk::{IsaGjkDispatcher, Stage};

@@ -77,7 +77,7 @@ where
         [HeightField, _] | [_, HeightField] => {
             height_field(dispatcher, pos12, shapes, prediction, manifolds, workspace)
         }
-        [Voxels, _] | [_, Voxels] => {
+        [Voxels, _] | [_, Voxels] if shapes.into_iter().all(may_meet_voxels) => {
             let is_composite = composites.iter().any(Option::is_some);
             let others = (shapes, is_composite);
             voxels(dispatcher, pos12, others, prediction, manifolds, workspace);
@@ -167,6 +167,12 @@ where
         }
     }
     false
+}
+
+/// Whether parry's routines for voxels know a shape. Any other, such as a half-space, ends in a panic there.
+fn may_meet_voxels(shape: &dyn Shape) -> bool {
+    let is_convex = shape.as_support_map().is_some();
+    is_convex || shape.as_composite_shape().is_some() || shape.as_voxels().is_some()
 }
 
 /// Voxels against anything. One of the shapes has voxels, and the other may be composite (`is_composite`).

@@ -92,6 +92,16 @@ pub(crate) fn closest_points(
     })
 }
 
+/// Whether parry's cast would count the cells that a half-space's endless box covers, and overflow.
+pub(crate) fn has_endless_cells(shapes: [&dyn Shape; 2]) -> bool {
+    use ShapeType::{HalfSpace, HeightField, Voxels};
+    let kinds = shapes.map(|shape| shape.shape_type());
+    matches!(
+        kinds,
+        [HalfSpace, HeightField | Voxels] | [HeightField | Voxels, HalfSpace]
+    )
+}
+
 pub(crate) fn cast_shapes(
     us: &impl QueryDispatcher,
     pos12: &Pose,

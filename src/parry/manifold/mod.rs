@@ -12,7 +12,6 @@ mod sink;
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, Unsupported};
-use parry3d::shape::PolygonalFeatureMap;
 
 use crate::curved::Body;
 use crate::parry::constraints::Constraints;
@@ -112,7 +111,6 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
     fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
-        _: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
     ) -> Result<(), Unsupported> {
         let pair = CurvedPair {

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use glam::DVec3;
 use parry3d::math::Pose;
 use parry3d::query::Unsupported;
-use parry3d::shape::{PolygonalFeatureMap, Shape};
+use parry3d::shape::Shape;
 
 use super::why::why_not;
 use crate::curved::Body;
@@ -87,7 +87,6 @@ impl PairVisitor for BoundsQuery<'_> {
     fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
-        _: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
         self.bounds(pair, GJK_CURVED_GAP, workspace)

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus, Unsupported};
-use parry3d::shape::{PolygonalFeatureMap, Shape};
+use parry3d::shape::Shape;
 
 use crate::curved::Body;
 use crate::parry::pair::{self, Pair, PairVisitor};
@@ -66,7 +66,6 @@ impl PairVisitor for Cast<'_> {
     fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
-        _: &dyn PolygonalFeatureMap,
         _: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
         self.cast(pair, |_, _, _| Err(Unsupported))

@@ -2,14 +2,13 @@
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::{Contact, Unsupported};
-use parry3d::shape::{PolygonalFeatureMap, Shape};
+use parry3d::shape::Shape;
 
-use crate::curved::Body;
+use crate::curved::{Body, CurvedAnswer, CurvedQuery, Hint};
 use crate::epa;
 use crate::gjk::{self, Outcome};
 use crate::parry::convert::HalfSpace;
 use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
-use crate::parry::scaled;
 use crate::parry::scene::caller::{KernelFrame, NearestPoints};
 use crate::parry::scene::capsules;
 use crate::parry::scene::convex::{self, Core};
@@ -43,32 +42,67 @@ struct ContactQuery<'a> {
 }
 
 impl ContactQuery<'_> {
-    fn of_cores<A: Support, B: Support>(
-        &self,
-        pair: &Pair<'_, B, A>,
-        workspace: &mut Workspace,
-    ) -> Result<CoreSeparation, Unsupported> {
-        let query = SeparationQuery {
-            pos12: self.pos12,
-            max_distance: self.prediction,
-        };
-        query.of_cores(pair, GJK_CURVED_GAP, workspace)
-    }
-
-    /// Of shapes without a hull. Where curved cores overlap, how deep is parry's to say.
+    /// Of shapes without a hull.
     fn convex(
         &self,
         pair: &Pair<'_, Core, Core>,
         workspace: &mut Workspace,
     ) -> Result<Option<Contact>, Unsupported> {
-        match self.of_cores(pair, workspace)? {
-            CoreSeparation::Overlapping if pair.hull.is_curved() || pair.other.is_curved() => {
-                Err(Unsupported)
+        if pair.hull.is_curved() || pair.other.is_curved() {
+            self.search(pair, workspace, Self::curved_depth)
+        } else {
+            self.search(pair, workspace, Self::depth)
+        }
+    }
+
+    /// By GJK, or by `depth` if the cores touch or overlap.
+    fn search<A: Support, B: Support>(
+        &self,
+        pair: &Pair<'_, B, A>,
+        workspace: &mut Workspace,
+        depth: fn(&Self, &Pair<'_, B, A>, &mut Workspace) -> Option<Contact>,
+    ) -> Result<Option<Contact>, Unsupported> {
+        let query = SeparationQuery {
+            pos12: self.pos12,
+            max_distance: self.prediction,
+        };
+        match query.of_cores(pair, GJK_CURVED_GAP, workspace)? {
+            CoreSeparation::Overlapping => {
+                depth(self, pair, workspace).ok_or(Unsupported).map(Some)
             }
-            CoreSeparation::Overlapping => self.depth(pair, workspace).ok_or(Unsupported).map(Some),
             CoreSeparation::Within(near) => Ok(Some(near.contact())),
             CoreSeparation::Beyond => Ok(None),
         }
+    }
+
+    /// The contact of a cylinder or a cone and another shape whose cores touch or overlap, as manifolds have it.
+    fn curved_depth<A: Body, B: Body>(
+        &self,
+        pair: &Pair<'_, B, A>,
+        workspace: &mut Workspace,
+    ) -> Option<Contact> {
+        let pose = pair.pose(ValidPose::new(self.pos12)?);
+        let mut query = CurvedQuery {
+            cso: &pair.cso(&pose),
+            border_radii: [0.0; 2],
+            max_distance: f64::INFINITY,
+            scratch: &mut workspace.curved,
+            cost: &mut Cost::default(),
+        };
+        let (
+            CurvedAnswer::Near {
+                signed_distance,
+                normal,
+                on_1,
+            },
+            _,
+        ) = query.run(Hint::None)?
+        else {
+            return None;
+        };
+        let points = [on_1, on_1 + normal * signed_distance];
+        let near = KernelFrame::new(pair, &pose).near(normal, points, signed_distance);
+        Some(near.contact())
     }
 
     /// The contact of shapes whose cores touch or overlap, by EPA. Its witness points are nearest where the
@@ -119,21 +153,12 @@ impl PairVisitor for ContactQuery<'_> {
         Ok(sink.nearest.map(|near| near.contact()))
     }
 
-    /// parry answers how deep they overlap. If they only touch, it may fail.
     fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
-        features: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
-        match self.of_cores(pair, workspace)? {
-            CoreSeparation::Overlapping => {
-                let contact = scaled::contact(pair, features, self.pos12);
-                Ok(contact.or_else(|| self.depth(pair, workspace)))
-            }
-            CoreSeparation::Within(near) => Ok(Some(near.contact())),
-            CoreSeparation::Beyond => Ok(None),
-        }
+        self.search(pair, workspace, Self::curved_depth)
     }
 
     fn visit_half_space(

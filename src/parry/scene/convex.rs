@@ -4,6 +4,7 @@ use glam::DVec3;
 use parry3d::query::Unsupported;
 use parry3d::shape::{Shape, ShapeType, TypedShape};
 
+use crate::curved::{Body, Piece, Ruling};
 use crate::map_pair::map_pair;
 use crate::parry::convert;
 use crate::parry::order::PairOrder;
@@ -76,45 +77,76 @@ impl Core {
         Some((core, border_radius.into()))
     }
 
-    fn support_map(&self) -> &dyn Support {
-        match self {
-            Self::Ball(core) => core,
-            Self::Segment(core) => core,
-            Self::Triangle(core) => core,
-            Self::Cuboid(core) => core,
-            Self::Cylinder(core) => core,
-            Self::Cone(core) => core,
-        }
-    }
-
     pub fn is_curved(&self) -> bool {
         matches!(self, Self::Cylinder(_) | Self::Cone(_))
     }
 }
 
+/// Evaluates an expression about the shape that a core is.
+macro_rules! of_shape {
+    ($core:expr, $shape:ident => $answer:expr) => {
+        match $core {
+            Core::Ball($shape) => $answer,
+            Core::Segment($shape) => $answer,
+            Core::Triangle($shape) => $answer,
+            Core::Cuboid($shape) => $answer,
+            Core::Cylinder($shape) => $answer,
+            Core::Cone($shape) => $answer,
+        }
+    };
+}
+
 impl Support for Core {
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
-        self.support_map().support(dir, start, cost)
+        of_shape!(self, shape => shape.support(dir, start, cost))
     }
 
     fn extent(&self, dir: DVec3) -> f64 {
-        self.support_map().extent(dir)
+        of_shape!(self, shape => shape.extent(dir))
     }
 
     fn start_vertex(&self, dir: DVec3) -> VertexId {
-        self.support_map().start_vertex(dir)
+        of_shape!(self, shape => shape.start_vertex(dir))
     }
 
     fn clamp_vertex(&self, vertex: VertexId) -> VertexId {
-        self.support_map().clamp_vertex(vertex)
+        of_shape!(self, shape => shape.clamp_vertex(vertex))
     }
 
     fn center(&self) -> DVec3 {
-        self.support_map().center()
+        of_shape!(self, shape => shape.center())
     }
 
     fn radius(&self) -> f64 {
-        self.support_map().radius()
+        of_shape!(self, shape => shape.radius())
+    }
+}
+
+/// The most edges at a vertex: a cuboid's.
+const MAX_RULINGS: usize = 3;
+
+impl Body for Core {
+    fn flat_normal(&self, dir: DVec3, vertex: VertexId) -> Option<DVec3> {
+        of_shape!(self, shape => shape.flat_normal(dir, vertex))
+    }
+
+    fn rulings(&self, dir: DVec3, vertex: VertexId) -> impl Iterator<Item = Ruling> {
+        let mut rulings = [None; MAX_RULINGS];
+        of_shape!(self, shape => {
+            let places = rulings.iter_mut().zip(shape.rulings(dir, vertex));
+            places.for_each(|(place, ruling)| *place = Some(ruling));
+        });
+        rulings.into_iter().flatten()
+    }
+
+    fn piece(
+        &self,
+        dir: DVec3,
+        vertex: VertexId,
+        border: f64,
+        corners: &mut Vec<(DVec3, VertexId)>,
+    ) -> Piece {
+        of_shape!(self, shape => shape.piece(dir, vertex, border, corners))
     }
 }
 

@@ -77,6 +77,9 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        if parts::has_endless_cells([g1, g2]) {
+            return Err(Unsupported);
+        }
         cast::cast_shapes(pos12, local_vel12, g1, g2, options)
             .or_else(|_| parts::cast_shapes(self, pos12, local_vel12, g1, g2, options))
             .or_else(|_| {

@@ -5,7 +5,6 @@
 use glam::DVec3;
 use parry3d::math::Real;
 use parry3d::query::{ShapeCastHit, ShapeCastStatus, Unsupported};
-use parry3d::shape::PolygonalFeatureMap;
 
 use super::motion::{Course, Motion};
 use crate::curved::Body;
@@ -68,7 +67,6 @@ impl PairVisitor for NonlinearCast {
     fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
-        _: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
         self.run(pair, CURVED_IMPACT_GAP, workspace)

@@ -5,7 +5,7 @@
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ClosestPoints, Unsupported};
-use parry3d::shape::{PolygonalFeatureMap, Shape};
+use parry3d::shape::Shape;
 
 use crate::curved::Body;
 use crate::parry::convert::HalfSpace;
@@ -171,7 +171,6 @@ impl PairVisitor for SeparationQuery<'_> {
     fn visit_curved<B: Body>(
         &mut self,
         pair: &Pair<'_, B>,
-        _: &dyn PolygonalFeatureMap,
         workspace: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
         self.separation(pair, GJK_CURVED_GAP, workspace)
