@@ -16,6 +16,7 @@ use std::error::Error;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
+use std::process::ExitCode;
 use std::time::Instant;
 
 use clap::{Args, Parser, Subcommand, value_parser};
@@ -40,7 +41,7 @@ struct Options {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Summarises the records of shards; fails if worlds are missing or told twice
+    /// Summarises the records of shards; fails if a world is missing or came twice
     Merge {
         /// Files that were written with `--out`
         #[arg(required = true)]
@@ -83,15 +84,24 @@ struct Run {
     quiet: bool,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
     let Options { command, run } = Options::parse();
-    match command {
-        Some(Command::Merge { files }) => {
-            let summary = Summary::of(&record::read_all(&files)?)?;
-            println!("{summary}");
+    let result = match command {
+        Some(Command::Merge { files }) => merge(&files),
+        None => run.run(),
+    };
+    match result {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
         }
-        None => run.run()?,
     }
+}
+
+fn merge(files: &[PathBuf]) -> Result<(), Box<dyn Error>> {
+    let summary = Summary::of(&record::read_all(files)?)?;
+    println!("{summary}");
     Ok(())
 }
 

@@ -26,6 +26,20 @@ pub struct Record {
     pub lost: u32,
 }
 
+impl Record {
+    /// What all worlds of a run have in common.
+    pub fn run(&self) -> String {
+        let Self {
+            worlds,
+            bodies,
+            steps,
+            seed,
+            ..
+        } = self;
+        format!("{worlds} worlds of {bodies} bodies, {steps} steps, from seed {seed}")
+    }
+}
+
 /// The records of all files.
 pub fn read_all(files: &[PathBuf]) -> Result<Vec<Record>, String> {
     let mut records = Vec::new();

@@ -19,24 +19,23 @@ pub struct Summary {
 impl Summary {
     /// Adds up the records, which must be of one run and have each of its worlds once.
     pub fn of(records: &[Record]) -> Result<Self, String> {
-        let first = records.first().ok_or("no world was told of")?;
-        if let Some(other) = records
-            .iter()
-            .find(|record| (record.worlds, record.seed) != (first.worlds, first.seed))
-        {
+        let first = records.first().ok_or("the files have no records")?;
+        if let Some(other) = records.iter().find(|record| record.run() != first.run()) {
             return Err(format!(
-                "world {} is of another run: {} worlds from seed {}, not {} from {}",
-                other.world, other.worlds, other.seed, first.worlds, first.seed
+                "world {} is of another run: {}, not {}",
+                other.world,
+                other.run(),
+                first.run()
             ));
         }
-        let mut told = vec![0_u32; first.worlds as usize];
+        let mut counts = vec![0_u32; first.worlds as usize];
         for record in records {
-            *told
+            *counts
                 .get_mut(record.world as usize)
                 .ok_or_else(|| format!("there is no world {}", record.world))? += 1;
         }
-        let with = |count: fn(u32) -> bool| told.iter().filter(|told| count(**told)).count();
-        let (missing, twice) = (with(|told| told == 0), with(|told| told > 1));
+        let with = |has: fn(u32) -> bool| counts.iter().filter(|count| has(**count)).count();
+        let (missing, twice) = (with(|count| count == 0), with(|count| count > 1));
         if missing + twice > 0 {
             return Err(format!("{missing} worlds are missing, {twice} came twice"));
         }
@@ -103,12 +102,17 @@ mod tests {
             seed: 2,
             ..record(1)
         };
+        let longer = Record {
+            steps: 11,
+            ..record(1)
+        };
         for records in [
             vec![],
             vec![record(0), record(1)],
             vec![record(0), record(1), record(1), record(2)],
             vec![record(0), record(1), record(2), record(3)],
             vec![record(0), other, record(2)],
+            vec![record(0), longer, record(2)],
         ] {
             assert!(Summary::of(&records).is_err(), "{records:?}");
         }
