@@ -51,6 +51,11 @@ pub const BOWL_LOSS: f64 = 8.0 * BOWL;
 /// the other diagonal. This is twice the depth of a dent.
 pub const FLAT_EDGE: f64 = 2e-6;
 
+/// An edge is steep if each of its triangles is this share of the radius above the other one's far corner. It
+/// is far above what rounding a normal to f32 can lift a neighbour: if all edges at a vertex are steep, the
+/// vertex is the highest of its neighbours over each of its triangles.
+pub const STEEP_EDGE: f64 = 1e-4;
+
 /// The corners of a flat side are at most this share of the radius from one plane. Then each of its diagonals
 /// is a [`FLAT_EDGE`].
 pub const FLAT_SIDE: f64 = FLAT_EDGE / 8.0;

@@ -10,7 +10,7 @@ mod graph;
 mod scan;
 mod start_table;
 
-pub(crate) use build::solid::surface_of_points;
+pub(crate) use build::solid::{surface_of_points, validate_surface};
 pub use error::HullError;
 
 use glam::{DVec3, Vec3};

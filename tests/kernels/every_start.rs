@@ -155,6 +155,9 @@ fn a_bowl_is_not_convex() {
             matches!(hull, Err(HullError::NotConvex(_))),
             "{cells}: {hull:?}"
         );
+        let points = bowl.0.iter().map(|p| p.as_vec3()).collect();
+        let shape = HullShape::from_triangles(points, &bowl.1);
+        assert_eq!(shape.err(), hull.err(), "{cells}");
     }
 }
 

@@ -163,6 +163,30 @@ fn trimming_reaches_other_threads_and_changes_no_answer() {
     other.join().expect("no panic");
 }
 
+/// As `docs/measured.md` states it.
+#[test]
+fn a_prepared_hull_takes_what_is_stated() {
+    let _turn = take_turn();
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut rng = Rng::new(136);
+    let ball = SharedShape::ball(0.5);
+    touch(&dispatcher, [&round(&mut rng, 30, 0.5), &ball]);
+    for vertices in [8, 12, 32, 60, 100, 300] {
+        let hulls: Vec<_> = (0..200).map(|_| round(&mut rng, vertices, 0.5)).collect();
+        let before = bytes();
+        for hull in &hulls {
+            touch(&dispatcher, [hull, &ball]);
+        }
+        let each = (bytes() - before) / hulls.len();
+        println!("{vertices} vertices: {each} bytes");
+        assert!(
+            each < 1000 + 160 * vertices,
+            "{vertices} vertices: {each} bytes"
+        );
+        dispatcher.trim();
+    }
+}
+
 /// More hulls than may stay unused, each queried in turn.
 #[test]
 fn many_hulls_in_use_are_prepared_once() {

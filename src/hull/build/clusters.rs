@@ -2,6 +2,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::faces::ClusterSeed;
 use crate::hull::clusters::FaceCluster;
 use crate::hull::faces::{FaceCorner, Faces};
 use crate::hull::graph::EdgeGraph;
@@ -13,24 +14,29 @@ use crate::tolerance::CLUSTER_ANGLE_COS;
 const MAX_MEMBERS: usize = 64;
 
 /// Grows clusters from these faces, the largest first.
-pub(in crate::hull) fn grow_clusters(
+pub(super) fn grow_clusters(
     points: &[DVec3],
     faces: &Faces,
     graph: &EdgeGraph,
-    seeds: &[u16],
+    seeds: &[ClusterSeed],
 ) -> Vec<FaceCluster> {
     let mut clusters = Vec::new();
     if seeds.is_empty() {
         return clusters;
     }
     let mut taken = vec![false; faces.len()];
-    for &seed in seeds {
-        let plane = SeedPlane::of(points, faces, seed.into());
-        if taken[usize::from(seed)] || plane.normal == DVec3::ZERO {
+    let mut members = Vec::new();
+    for &ClusterSeed { face, has_company } in seeds {
+        let plane = SeedPlane::of(points, faces, face.into());
+        if taken[usize::from(face)] || plane.normal == DVec3::ZERO {
             continue;
         }
-        let mut members = vec![seed];
-        taken[usize::from(seed)] = true;
+        taken[usize::from(face)] = true;
+        if !has_company {
+            continue;
+        }
+        members.clear();
+        members.push(face);
         let mut next = 0;
         while let Some(&member) = members.get(next) {
             for other in adjacent_faces(faces, graph, member) {
@@ -46,7 +52,7 @@ pub(in crate::hull) fn grow_clusters(
             let outline = plane.outline(points, faces, &members);
             clusters.push(FaceCluster {
                 covered_nonmembers: covered_nonmembers(faces, graph, &members, &outline),
-                members,
+                members: members.clone(),
                 outline,
             });
         }

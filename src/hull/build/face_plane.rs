@@ -23,11 +23,12 @@ impl FacePlane {
     };
 
     /// The plane goes through the outermost of the polygon's corners and their neighbours: on a convex hull
-    /// no vertex is farther out.
+    /// no vertex is farther out. Around a steep corner, no neighbour is.
     pub fn new(
         points: &[DVec3],
         mesh: &HalfEdgeMesh<'_>,
         polygon: &[HalfEdge],
+        is_steep: &[bool],
         radius: f64,
     ) -> Self {
         let normal = polygon_normal(points, mesh, polygon).as_vec3();
@@ -43,9 +44,11 @@ impl FacePlane {
             let level = height(corner);
             lowest = -higher(-lowest, -level);
             highest = higher(highest, level);
-            for to in mesh.outgoing(corner).iter().map(|side| u32::from(side.to)) {
-                if to != before && to != after {
-                    around = higher(around, height(to));
+            if !is_steep[corner as usize] {
+                for to in mesh.outgoing(corner).iter().map(|side| u32::from(side.to)) {
+                    if to != before && to != after {
+                        around = higher(around, height(to));
+                    }
                 }
             }
             before = corner;

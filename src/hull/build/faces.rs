@@ -1,5 +1,6 @@
 //! Merging coplanar triangles into faces.
 
+use std::cmp::Reverse;
 use std::{iter, mem};
 
 use glam::DVec3;
@@ -13,14 +14,14 @@ use crate::hull::clusters::FaceClusters;
 use crate::hull::faces::{FaceCorner, FaceRecord, Faces, IN_CLUSTER, NO_EDGE};
 use crate::hull::graph::EdgeGraph;
 use crate::support::FaceId;
-use crate::tolerance::FACE_FLATNESS;
+use crate::tolerance::{CLUSTER_ANGLE_COS, FACE_FLATNESS};
 
 /// The result of merging triangles.
-pub(in crate::hull) struct MergedFaces {
+pub(super) struct MergedFaces {
     /// The face of each triangle.
     pub face_of: Vec<u16>,
     /// The faces from which clusters may grow, ordered by their largest triangles.
-    seeds: Vec<u16>,
+    seeds: Vec<ClusterSeed>,
     /// The faces with a neighbouring vertex that is higher than one of their corners.
     pub overtopped: Vec<u16>,
 }
@@ -40,20 +41,27 @@ impl MergedFaces {
 impl Faces {
     /// Merges the triangles of a surface. Faces are in the order of their first triangles, so that faces
     /// around a vertex lie as near in memory as the triangles do.
-    pub fn new(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, radius: f64) -> (Self, MergedFaces) {
+    pub(super) fn new(
+        points: &[DVec3],
+        mesh: &HalfEdgeMesh<'_>,
+        surface: &AreaVectors,
+        is_steep: &[bool],
+        radius: f64,
+    ) -> (Self, MergedFaces) {
         let count = mesh.triangles.len();
-        let surface = AreaVectors::new(points, mesh.triangles, radius);
-        let flat = NearlyFlatEdges::new(mesh, &surface);
-        let regions = CoplanarRegions::grow(points, mesh, &surface, &flat, radius);
+        let flat = NearlyFlatEdges::new(mesh, surface);
+        let regions = CoplanarRegions::grow(points, mesh, surface, &flat, radius);
         let mut merged = MergedFaces {
             face_of: vec![0; count],
             seeds: Vec::new(),
             overtopped: Vec::new(),
         };
         let mut faces = Builder::with_capacity(count);
-        let mut faces_of = vec![0..0; regions.len()];
+        let mut is_added = vec![false; regions.len()];
+        // The largest triangle of the region of each face.
+        let mut largest = Vec::with_capacity(count);
         let mut add = |polygon: &[HalfEdge], triangles: &[u32]| {
-            let plane = FacePlane::new(points, mesh, polygon, radius);
+            let plane = FacePlane::new(points, mesh, polygon, is_steep, radius);
             merged.note(faces.polygons.len() as u16, triangles, &plane);
             let corner = |&side: &HalfEdge| FaceCorner {
                 vertex: mesh.start(side) as u16,
@@ -62,59 +70,72 @@ impl Faces {
             faces.add(&plane, polygon.iter().map(corner));
         };
         let mut polygon = Vec::new();
-        let mut face_count = 0;
         for &r in &regions.of {
-            if !faces_of[r as usize].is_empty() {
+            if mem::replace(&mut is_added[r as usize], true) {
                 continue;
             }
             let region = regions.triangles(r as usize);
             let is_one_face = region.len() > 1
                 && regions.boundary(mesh, region, &mut polygon)
                 && is_convex(points, mesh, &polygon, radius);
-            let first = face_count;
             if is_one_face {
                 add(&polygon, region);
-                face_count += 1;
+                largest.push(region[0]);
             } else {
                 // A region that is not a convex polygon becomes one face per triangle.
                 for &t in region {
                     add(&[3 * t, 3 * t + 1, 3 * t + 2], &[t]);
-                    face_count += 1;
+                    largest.push(region[0]);
                 }
             }
-            faces_of[r as usize] = first..face_count;
         }
-        let faces = faces.finish(face_count.into(), FaceClusters::default());
-        let largest_first = faces_of.into_iter().flatten();
-        merged.seeds = faces.cluster_seeds(mesh, &flat, &merged.face_of, largest_first);
+        let faces = faces.finish(largest.len(), FaceClusters::default());
+        merged.seeds = faces.cluster_seeds(mesh, &flat, &merged.face_of);
+        merged.seeds.sort_unstable_by_key(|seed| {
+            let t = largest[usize::from(seed.face)];
+            (Reverse(surface.areas[t as usize].to_bits()), t, seed.face)
+        });
         (faces, merged)
     }
 
-    /// The faces that have a nearly flat edge to another face.
+    /// The faces that have a nearly flat edge to another face, in their order.
     fn cluster_seeds(
         &self,
         mesh: &HalfEdgeMesh<'_>,
         flat: &NearlyFlatEdges,
         face_of: &[u16],
-        largest_first: impl Iterator<Item = u16>,
-    ) -> Vec<u16> {
+    ) -> Vec<ClusterSeed> {
         if flat.is_empty() {
             return Vec::new();
         }
         // A face without a plane may join any cluster.
         let has_planes = (0..self.len()).all(|face| self.normal(FaceId::new(face)) != DVec3::ZERO);
-        let mut may_grow = vec![!has_planes; self.len()];
+        let mut seeds = vec![(!has_planes, !has_planes); self.len()];
         for h in (0..3 * face_of.len() as HalfEdge).filter(|&h| flat.contains(h)) {
             let [here, beyond] = [h, mesh.twin(h)].map(|h| face_of[triangle(h)]);
-            may_grow[usize::from(here)] |= here != beyond;
+            if here != beyond {
+                let [one, other] = [here, beyond].map(|face| self.normal(face.into()));
+                let (is_seed, has_company) = &mut seeds[usize::from(here)];
+                *is_seed = true;
+                *has_company |= one.dot(other) >= CLUSTER_ANGLE_COS;
+            }
         }
-        largest_first
-            .filter(|&face| may_grow[usize::from(face)])
-            .collect()
+        let mut all = Vec::new();
+        for (face, (is_seed, has_company)) in (0..).zip(seeds) {
+            if is_seed {
+                all.push(ClusterSeed { face, has_company });
+            }
+        }
+        all
     }
 
     /// Finds the clusters. The `graph` must know the faces already.
-    pub fn add_clusters(&mut self, points: &[DVec3], graph: &EdgeGraph, merged: &MergedFaces) {
+    pub(super) fn add_clusters(
+        &mut self,
+        points: &[DVec3],
+        graph: &EdgeGraph,
+        merged: &MergedFaces,
+    ) {
         let clusters = grow_clusters(points, self, graph, &merged.seeds);
         if clusters.is_empty() {
             return;
@@ -140,6 +161,13 @@ impl Faces {
         }
         *self = faces.finish(self.count, FaceClusters::new(&clusters, self.count));
     }
+}
+
+/// A face from which a cluster may grow.
+pub(super) struct ClusterSeed {
+    pub face: u16,
+    /// Whether a face beside it may be a member, too.
+    pub has_company: bool,
 }
 
 /// Polygons one after the other.

@@ -1,6 +1,7 @@
 //! Building hulls: from points, from triangles, and from parry's polyhedra.
 
 mod clusters;
+mod face_loops;
 mod face_plane;
 mod faces;
 mod flat_edges;
@@ -13,4 +14,5 @@ pub(crate) mod polyhedron;
 mod quickhull;
 mod regions;
 pub(super) mod solid;
+mod surface;
 mod validate;

@@ -1,14 +1,15 @@
 //! The triangulated surface behind parry's convex polyhedron.
 //!
-//! parry merges triangles up to 1.5 degrees apart, so its faces may miss vertices. But it still lists all
-//! edges of the triangulation. Seen from a point inside, the edges around a vertex have a cyclic order, and
-//! successive edges in that order span the triangles.
+//! parry merges triangles up to 1.5 degrees apart, but it still lists all edges of the triangulation, so the
+//! faces mostly yield it (`face_loops`). Where they miss vertices, only the edges do: seen from a point inside,
+//! the edges around a vertex have a cyclic order, and successive edges in that order span the triangles.
 
 use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3, Vec3};
 use parry3d::shape::ConvexPolyhedron;
 
+use super::face_loops::FaceTriangles;
 use super::flat_sides;
 use super::validate::MAX_VERTICES;
 use crate::hull::{Hull, HullError};
@@ -36,19 +37,60 @@ pub(crate) fn hull_and_diagonals(
     if points.len() > MAX_VERTICES {
         return (Err(HullError::TooManyPoints), Diagonals(Box::default()));
     }
-    let Some(surface) = Triangulation::of(polyhedron) else {
-        return (Hull::from_points(points), Diagonals::all(polyhedron));
-    };
-    if let Some(hull) = surface.with_own_diagonals(points) {
-        return (Ok(hull), Diagonals(Box::default()));
+    match hull_of_surface(polyhedron) {
+        Some((hull, diagonals)) => (Ok(hull), diagonals),
+        None => (Hull::from_points(points), Diagonals::all(polyhedron)),
     }
-    match Hull::from_reordered_triangles(points.to_vec(), &surface.triangles) {
-        Ok(hull) => (
-            Ok(hull),
-            Diagonals::of(polyhedron, surface.flat_edges.into_iter()),
-        ),
-        Err(_) => (Hull::from_points(points), Diagonals::all(polyhedron)),
+}
+
+/// The same without a detour over the points: `None` if the surface is no convex triangulation of them.
+pub(crate) fn hull_of_surface(polyhedron: &ConvexPolyhedron) -> Option<(Hull, Diagonals)> {
+    let points = polyhedron.points();
+    let faces = FaceTriangles::of(polyhedron);
+    if let Some(faces) = &faces
+        && let Some(hull) = of_faces(points, faces)
+    {
+        return Some((hull, Diagonals(Box::default())));
     }
+    let surface = Triangulation::of(polyhedron)?;
+    if faces.is_none()
+        && !surface.flat_edges.is_empty()
+        && let Some(hull) = with_own_diagonals(points, &surface.triangles, surface.radius)
+    {
+        return Some((hull, Diagonals(Box::default())));
+    }
+    let hull = Hull::from_reordered_triangles(points.to_vec(), &surface.triangles).ok()?;
+    Some((
+        hull,
+        Diagonals::of(polyhedron, surface.flat_edges.into_iter()),
+    ))
+}
+
+/// The hull, if it depends only on the points: each edge bends, or is a diagonal of a flat side.
+fn of_faces(points: &[Vec3], faces: &FaceTriangles) -> Option<Hull> {
+    if !faces.seem_flat
+        && let Ok(Some(hull)) = Hull::from_bent_triangles(points.to_vec(), &faces.triangles)
+    {
+        return Some(hull);
+    }
+    if !points.iter().all(|p| p.is_finite()) {
+        return None;
+    }
+    with_own_diagonals(points, &faces.triangles, around_middle(points).1)
+}
+
+/// The hull with diagonals that depend only on the points, if all flat edges are diagonals of flat sides.
+fn with_own_diagonals(points: &[Vec3], triangles: &[[u32; 3]], radius: f64) -> Option<Hull> {
+    let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
+    let triangles = flat_sides::retriangulated(&exact, triangles, radius)?;
+    Hull::from_reordered_triangles(points.to_vec(), &triangles).ok()
+}
+
+/// The middle of the vertices, which is inside the hull, and the largest distance of a vertex from it.
+fn around_middle(points: &[Vec3]) -> (DVec3, f64) {
+    let middle = points.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / points.len() as f64;
+    let squares = points.iter().map(|p| p.as_dvec3().distance_squared(middle));
+    (middle, squares.fold(0.0, f64::max).sqrt())
 }
 
 /// A hash of the points and edges of a polyhedron, which determine its hull.
@@ -117,6 +159,14 @@ pub(crate) fn same_points(a: &[Vec3], b: &[Vec3]) -> bool {
 
 /// The triangles of a polyhedron, counter-clockwise from outside; `None` if they are ambiguous.
 pub(crate) fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
+    match FaceTriangles::of(polyhedron) {
+        Some(faces) => Some(faces.triangles),
+        None => triangles_of_edges(polyhedron),
+    }
+}
+
+/// The same by the edges alone.
+pub(super) fn triangles_of_edges(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
     Some(Triangulation::of(polyhedron)?.triangles)
 }
 
@@ -135,9 +185,7 @@ impl Triangulation {
         if points.iter().any(|p| !p.is_finite()) {
             return None;
         }
-        let inside = points.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / points.len() as f64;
-        let squares = points.iter().map(|p| p.as_dvec3().distance_squared(inside));
-        let radius = squares.fold(0.0, f64::max).sqrt();
+        let (inside, radius) = around_middle(points);
         let flatness = FLAT_EDGE * radius;
         let (first, rows) = edge_rows(points.len(), polyhedron);
         let mut triangles = Vec::with_capacity(2 * points.len());
@@ -164,21 +212,12 @@ impl Triangulation {
                 }
             }
         }
+        triangles.sort_unstable();
         Some(Self {
             triangles,
             flat_edges,
             radius,
         })
-    }
-
-    /// The hull with diagonals that depend only on the points, if all flat edges are diagonals of flat sides.
-    fn with_own_diagonals(&self, points: &[Vec3]) -> Option<Hull> {
-        if self.flat_edges.is_empty() {
-            return None;
-        }
-        let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
-        let triangles = flat_sides::retriangulated(&exact, &self.triangles, self.radius)?;
-        Hull::from_reordered_triangles(points.to_vec(), &triangles).ok()
     }
 }
 

@@ -22,7 +22,7 @@ const FREE: u32 = u32::MAX;
 
 impl CoplanarRegions {
     /// Grows regions over flat edges, starting from the largest triangles, whose normals are the most
-    /// reliable.
+    /// reliable. The triangles without a flat edge come last.
     pub fn grow(
         points: &[DVec3],
         mesh: &HalfEdgeMesh<'_>,
@@ -31,14 +31,12 @@ impl CoplanarRegions {
         radius: f64,
     ) -> Self {
         let count = mesh.triangles.len();
-        if flat.is_empty() {
-            return Self::single(count);
-        }
         let mut regions = Self {
             triangles: Vec::with_capacity(count),
-            first: vec![0],
+            first: Vec::with_capacity(count + 1),
             of: vec![FREE; count],
         };
+        regions.first.push(0);
         // Whether a triangle lies in the plane of some others.
         let joins = |some: &[u32]| {
             let (normal, center) = plane(points, mesh.triangles, surface, some);
@@ -50,7 +48,8 @@ impl CoplanarRegions {
                 (!turned || surface.is_sliver[t]) && mesh.triangles[t].iter().all(is_near)
             }
         };
-        for seed in largest_first(&surface.areas) {
+        let is_beside = |t: &u32| (3 * t..3 * t + 3).any(|side| flat.contains(side));
+        for seed in largest_first(&surface.areas, (0..count as u32).filter(is_beside)) {
             if regions.of[seed as usize] != FREE {
                 continue;
             }
@@ -61,15 +60,18 @@ impl CoplanarRegions {
                 regions.add(mesh, flat, seed, joins(&found));
             }
         }
+        regions.add_single();
         regions
     }
 
-    /// Makes a region of each triangle.
-    fn single(count: usize) -> Self {
-        Self {
-            triangles: (0..count as u32).collect(),
-            first: (0..=count).collect(),
-            of: (0..count as u32).collect(),
+    /// Makes a region of each triangle that is in none.
+    fn add_single(&mut self) {
+        for t in 0..self.of.len() {
+            if self.of[t] == FREE {
+                self.of[t] = self.len() as u32;
+                self.triangles.push(t as u32);
+                self.first.push(self.triangles.len());
+            }
         }
     }
 
@@ -152,11 +154,11 @@ impl CoplanarRegions {
     }
 }
 
-/// The triangles, the largest first.
-fn largest_first(areas: &[f64]) -> impl Iterator<Item = u32> {
+/// Some triangles, the largest first.
+fn largest_first(areas: &[f64], triangles: impl Iterator<Item = u32>) -> impl Iterator<Item = u32> {
     // The bits of non-negative numbers sort as the numbers do.
-    let bits = areas.iter().map(|area| Reverse(area.to_bits()));
-    let mut triangles: Vec<_> = bits.zip(0..).collect();
+    let with_size = |t: u32| (Reverse(areas[t as usize].to_bits()), t);
+    let mut triangles: Vec<_> = triangles.map(with_size).collect();
     triangles.sort_unstable();
     triangles.into_iter().map(|(_, triangle)| triangle)
 }

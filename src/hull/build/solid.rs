@@ -1,22 +1,13 @@
 //! Building hulls from points and triangles.
 
-use glam::{DVec3, Vec3};
+use std::borrow::Cow;
 
-use super::half_edge::HalfEdgeMesh;
-use super::validate::{
-    MAX_VERTICES, center_and_radius, validate_convex, validate_distinct, validate_finite,
-    validate_no_bowl, validate_single_layer, validate_triangles,
-};
+use glam::Vec3;
+
+use super::surface::Surface;
+use super::validate::validate_finite;
 use super::{morton, quickhull};
-use crate::hull::climb::{self, HillClimb};
-use crate::hull::faces::Faces;
-use crate::hull::graph::EdgeGraph;
-use crate::hull::scan::{self, Scan};
-use crate::hull::start_table::StartTable;
-use crate::hull::{Hull, HullError, SupportSearch};
-use crate::stats::Cost;
-use crate::support::Polytope;
-use crate::tolerance::MIN_EXTENT;
+use crate::hull::{Hull, HullError, scan};
 
 /// The vertices and triangles of the hull of a point cloud.
 pub(crate) fn surface_of_points(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
@@ -54,11 +45,22 @@ impl Hull {
         points: Vec<Vec3>,
         triangles: &[[u32; 3]],
     ) -> Result<Self, HullError> {
-        if points.len() <= scan::LARGEST {
-            return Self::from_triangles(points, triangles);
-        }
-        let (points, triangles) = morton::morton_order(&points, triangles);
+        let (points, triangles) = reordered(points, triangles);
         Self::from_triangles(points, &triangles)
+    }
+
+    /// The same for a surface that bends at every edge; `None` for others.
+    pub(in crate::hull) fn from_bent_triangles(
+        points: Vec<Vec3>,
+        triangles: &[[u32; 3]],
+    ) -> Result<Option<Self>, HullError> {
+        let (points, triangles) = reordered(points, triangles);
+        let surface = Surface::new(points, &triangles)?;
+        if surface.bends_everywhere() {
+            surface.into_hull().map(Some)
+        } else {
+            Ok(None)
+        }
     }
 
     /// From the triangulated surface of a convex polytope, counter-clockwise from outside.
@@ -68,72 +70,20 @@ impl Hull {
     /// # Errors
     /// [`HullError`] says what is wrong with the surface.
     pub fn from_triangles(points: Vec<Vec3>, triangles: &[[u32; 3]]) -> Result<Self, HullError> {
-        if points.len() < 4 {
-            return Err(HullError::TooFewPoints);
-        }
-        if points.len() > MAX_VERTICES {
-            return Err(HullError::TooManyPoints);
-        }
-        validate_finite(&points)?;
-        validate_triangles(&points, triangles)?;
-        validate_distinct(&points)?;
-        let mesh = HalfEdgeMesh::new(points.len(), triangles)?;
-        // Points are converted to f64 once.
-        let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
-        let (center, radius) = center_and_radius(&exact, triangles)?;
-        let at_flat_edge = validate_convex(&exact, &mesh, radius)?;
-        validate_single_layer(&exact, triangles, center, radius)?;
-
-        let (mut faces, merged) = Faces::new(&exact, &mesh, radius);
-        let mut graph = EdgeGraph::new(&mesh, &merged.face_of);
-        let climb = HillClimb {
-            points: &points,
-            graph: &graph,
-            center,
-            radius,
-        };
-        validate_no_bowl(climb, &faces, &merged.overtopped)?;
-        faces.add_clusters(&exact, &graph, &merged);
-        if points.len() > scan::LARGEST {
-            graph.mark_plateau_search(|graph, v| {
-                at_flat_edge[v.index()] || climb::has_short_edge(&exact, graph, radius, v)
-            });
-        }
-        let hull = Self {
-            search: SupportSearch::new(&points, &graph, center, radius),
-            points: points.into(),
-            graph,
-            faces,
-            center,
-            radius,
-        };
-        hull.validate_interior()?;
-        Ok(hull)
-    }
-
-    /// The centre must be clearly inside every face.
-    fn validate_interior(&self) -> Result<(), HullError> {
-        let deep_inside = self.face_ids().all(|f| {
-            self.face_offset(f) - self.face_normal(f).dot(self.center) > MIN_EXTENT * self.radius
-        });
-        deep_inside.then_some(()).ok_or(HullError::Flat)
+        Surface::new(points, triangles)?.into_hull()
     }
 }
 
-impl SupportSearch {
-    /// The faster search: a scan for a small hull, and climbs for a large one.
-    fn new(points: &[Vec3], graph: &EdgeGraph, center: DVec3, radius: f64) -> Self {
-        if let Some(scan) = Scan::new(points, center, radius) {
-            return Self::Scan(scan);
-        }
-        let climb = HillClimb {
-            points,
-            graph,
-            center,
-            radius,
-        };
-        Self::Climb(StartTable::new(points.len(), |dir, start| {
-            climb::extreme_vertex(climb, dir, start, &mut Cost::default())
-        }))
+/// Checks what [`Hull::from_triangles`] checks before it looks for faces.
+pub(crate) fn validate_surface(points: Vec<Vec3>, triangles: &[[u32; 3]]) -> Result<(), HullError> {
+    Surface::new(points, triangles).map(|_| ())
+}
+
+/// The vertices and triangles of a large hull in an order for faster climbs.
+fn reordered(points: Vec<Vec3>, triangles: &[[u32; 3]]) -> (Vec<Vec3>, Cow<'_, [[u32; 3]]>) {
+    if points.len() <= scan::LARGEST {
+        return (points, triangles.into());
     }
+    let (points, triangles) = morton::morton_order(&points, triangles);
+    (points, triangles.into())
 }

@@ -2,13 +2,13 @@
 
 use glam::{DVec3, Vec3};
 
-use super::flat_edges::{area_vector, longest_side};
-use super::half_edge::{HalfEdgeMesh, next};
+use super::flat_edges::{AreaVectors, longest_side};
+use super::half_edge::{HalfEdgeMesh, next, triangle};
 use crate::hull::HullError;
 use crate::hull::climb::{self, HillClimb};
 use crate::hull::faces::Faces;
 use crate::support::FaceId;
-use crate::tolerance::{BOWL, MAX_DENT, MAX_INWARD_HEIGHT, MIN_EXTENT};
+use crate::tolerance::{BOWL, FLAT_EDGE, MAX_DENT, MAX_INWARD_HEIGHT, MIN_EXTENT, STEEP_EDGE};
 
 /// The largest number of vertices of a hull: the ids of its at most `2 n - 4` faces must fit into 16 bits.
 pub(super) const MAX_VERTICES: usize = 32_768;
@@ -32,15 +32,31 @@ pub(super) fn validate_triangles(points: &[Vec3], triangles: &[[u32; 3]]) -> Res
 
 /// Refuses points that coincide, such as corners of a mesh that was not welded.
 pub(super) fn validate_distinct(points: &[Vec3]) -> Result<(), HullError> {
-    // Adding zero turns -0 into 0.
-    let bits = |(i, p): (usize, &Vec3)| ((*p + Vec3::ZERO).to_array().map(f32::to_bits), i);
-    let mut places: Vec<([u32; 3], usize)> = points.iter().enumerate().map(bits).collect();
-    places.sort_unstable();
-    let same = places.windows(2).filter(|pair| pair[0].0 == pair[1].0);
-    match same.map(|pair| pair[1].1).min() {
-        Some(i) => Err(HullError::DuplicateVertex(i)),
-        None => Ok(()),
+    // A hash table of indices, of which at most half is full.
+    let mut table = vec![NOTHING; (2 * points.len()).next_power_of_two()];
+    let mask = table.len() - 1;
+    for (i, point) in points.iter().enumerate() {
+        let mut place = hash(*point) & mask;
+        while table[place] != NOTHING {
+            if points[table[place] as usize] == *point {
+                return Err(HullError::DuplicateVertex(i));
+            }
+            place = (place + 1) & mask;
+        }
+        table[place] = i as u32;
     }
+    Ok(())
+}
+
+/// A place of the table without a point.
+const NOTHING: u32 = u32::MAX;
+
+/// Equal for equal points. Adding zero turns -0 into 0.
+fn hash(point: Vec3) -> usize {
+    let [x, y, z] = (point + Vec3::ZERO).to_array().map(f32::to_bits);
+    let mixed = (u64::from(x) << 32 | u64::from(y)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let mixed = (mixed ^ mixed >> 32 ^ u64::from(z)).wrapping_mul(0xD6E8_FEB8_6659_FD93);
+    (mixed >> 32) as usize
 }
 
 /// The centre of volume, and the largest distance of a vertex from it.
@@ -72,16 +88,21 @@ pub(super) fn center_and_radius(
 }
 
 /// Refuses edges that are dents, beyond rounding. A closed surface in a single layer is convex if it is
-/// convex at every edge. Returns which vertices belong to two triangles that are flat up to rounding.
+/// convex at every edge. Returns how much it bends.
 ///
 /// The depth of a dent is how far its edge passes beneath the other diagonal of its two triangles. (Heights
 /// over the planes of the triangles mean nothing if these are slivers.)
 pub(super) fn validate_convex(
     points: &[DVec3],
     mesh: &HalfEdgeMesh<'_>,
+    surface: &AreaVectors,
     radius: f64,
-) -> Result<Vec<bool>, HullError> {
-    let mut at_flat_edge = vec![false; points.len()];
+) -> Result<Bends, HullError> {
+    let mut bends = Bends {
+        at_flat_edge: vec![false; points.len()],
+        is_steep: vec![true; points.len()],
+        everywhere: true,
+    };
     let at = |v: u32| points[v as usize];
     for h in 0..3 * mesh.triangles.len() as u32 {
         let twin = mesh.twin(h);
@@ -97,12 +118,29 @@ pub(super) fn validate_convex(
             }
             if rise >= -rounding {
                 for v in ends.into_iter().chain([third, opposite]) {
-                    at_flat_edge[v as usize] = true;
+                    bends.at_flat_edge[v as usize] = true;
                 }
             }
+            let [one, other] = [h, twin].map(|h| surface.areas[triangle(h)]);
+            let area = if one > other { one } else { other };
+            let is_steep = -rise >= STEEP_EDGE * radius * area;
+            bends.is_steep[ends[0] as usize] &= is_steep;
+            bends.is_steep[ends[1] as usize] &= is_steep;
+            // Twice, since the centre may be anywhere.
+            bends.everywhere &= is_steep || -rise > 2.0 * FLAT_EDGE * radius * area;
         }
     }
-    Ok(at_flat_edge)
+    Ok(bends)
+}
+
+/// How much a surface bends at its edges.
+pub(super) struct Bends {
+    /// The vertices of two triangles that are flat up to rounding.
+    pub at_flat_edge: Vec<bool>,
+    /// The vertices at which all edges are steep: no neighbour of theirs is as high as the planes around them.
+    pub is_steep: Vec<bool>,
+    /// Whether no edge is a [`FLAT_EDGE`], whatever point inside the radius is measured from.
+    pub everywhere: bool,
 }
 
 /// Refuses faces with much of the hull in front of their plane. Each edge of a bowl is a dent within
@@ -132,15 +170,17 @@ pub(super) fn validate_no_bowl(
 pub(super) fn validate_single_layer(
     points: &[DVec3],
     triangles: &[[u32; 3]],
+    surface: &AreaVectors,
     center: DVec3,
     radius: f64,
 ) -> Result<(), HullError> {
     let mut crossings = 0;
-    for &triangle in triangles {
-        let normal = area_vector(points, triangle);
+    for (&triangle, (&normal, &area)) in triangles
+        .iter()
+        .zip(surface.vectors.iter().zip(&surface.areas))
+    {
         let [a, b, c] = triangle.map(|v| points[v as usize] - center);
-        let is_sliver =
-            || normal.length() <= MAX_INWARD_HEIGHT * radius * longest_side(points, triangle);
+        let is_sliver = || area <= MAX_INWARD_HEIGHT * radius * longest_side(points, triangle);
         let is_fold = normal.dot(a) < 0.0 && !is_sliver();
         // The ray passes on the left of the sides.
         let passes = |from: DVec3, to: DVec3| from.cross(to).dot(TEST_RAY) > 0.0;

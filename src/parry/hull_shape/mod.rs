@@ -127,11 +127,28 @@ impl HullShape {
     /// # Ok::<(), HullError>(())
     /// ```
     pub fn from_triangles(points: Vec<Vec3>, triangles: &[[u32; 3]]) -> Result<Self, HullError> {
-        // Built for its checks: parry's polyhedron trusts its input.
-        Hull::from_triangles(points.clone(), triangles)?;
-        ConvexPolyhedron::from_convex_mesh(points, triangles)
-            .ok_or(HullError::BuilderFailed)?
-            .try_into()
+        // parry's polyhedron trusts its input.
+        hull::validate_surface(points.clone(), triangles)?;
+        let polyhedron = ConvexPolyhedron::from_convex_mesh(points.clone(), triangles)
+            .ok_or(HullError::BuilderFailed)?;
+        if let Some((hull, _)) = polyhedron::hull_of_surface(&polyhedron) {
+            return Ok(Self::new(polyhedron, hull));
+        }
+        // It may still be no hull, for reasons that only its faces show.
+        Hull::from_triangles(points, triangles)?;
+        polyhedron.try_into()
+    }
+
+    fn new(polyhedron: ConvexPolyhedron, hull: Hull) -> Self {
+        let inner = Inner {
+            local_aabb: polyhedron.local_aabb(),
+            mass: MassProperties::from_convex_polyhedron(1.0, hull.points(), &triangles(&hull)),
+            hull,
+            polyhedron,
+        };
+        Self {
+            inner: Arc::new(inner),
+        }
     }
 
     /// The hull with each coordinate multiplied by that of `scale`; `None` if the result is flat.
@@ -181,15 +198,7 @@ impl TryFrom<ConvexPolyhedron> for HullShape {
         // Built from the polyhedron even if the triangles are known. The dispatcher does the same with the
         // plain hull of a loaded world, so feature ids stay the same.
         let hull = Hull::try_from(&polyhedron)?;
-        let inner = Inner {
-            local_aabb: polyhedron.local_aabb(),
-            mass: MassProperties::from_convex_polyhedron(1.0, hull.points(), &triangles(&hull)),
-            hull,
-            polyhedron,
-        };
-        Ok(Self {
-            inner: Arc::new(inner),
-        })
+        Ok(Self::new(polyhedron, hull))
     }
 }
 
