@@ -99,3 +99,10 @@ pub(crate) const USED_UP: f64 = 0.05;
 /// An edge or a side is looked at if the sine of its angle to the normal at hand is off by less than this: the
 /// normals of coarse searches are off by up to a fifth.
 pub(crate) const NEAR_RULING: f64 = 0.3;
+
+/// From one frame to the next a normal turns by less than this angle, mostly: pieces of surface that it misses by
+/// more are looked at later.
+pub(crate) const SMALL_TURN: f64 = 0.03;
+
+/// The longest step of Newton's method, as an angle: beyond it the slope at hand says little.
+pub(crate) const LONGEST_STEP: f64 = 0.5;

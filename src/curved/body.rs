@@ -15,6 +15,17 @@ pub struct Ruling {
     pub sine: f64,
 }
 
+/// A circular edge.
+#[derive(Clone, Copy, Debug)]
+pub struct Rim {
+    /// A point of its axis.
+    pub center: DVec3,
+    /// The unit vector along its axis.
+    pub axis: DVec3,
+    /// Its radius.
+    pub radius: f64,
+}
+
 /// A convex shape with pieces of surface. Everything is in its own frame.
 pub trait Body: Support {
     /// The normal of the flat side at `vertex`, extreme along `dir`, that looks most along `dir`.
@@ -22,6 +33,12 @@ pub trait Body: Support {
 
     /// The edges at `vertex`, extreme along `dir`, and the ruled sides.
     fn rulings(&self, dir: DVec3, vertex: VertexId) -> impl Iterator<Item = Ruling>;
+
+    /// The straight edge at `vertex`, extreme along `dir`, that is most across that, if there is one.
+    fn edge(&self, dir: DVec3, vertex: VertexId) -> Option<[DVec3; 2]>;
+
+    /// The rim on which the point is that is extreme along `dir`, if it is on one.
+    fn rim(&self, dir: DVec3) -> Option<Rim>;
 
     /// The piece at `vertex`, extreme along `dir`, that looks most along `dir`. `border` is the width of the
     /// rounded border, by which the piece is moved outwards. The corners of a polygon go to `corners`.

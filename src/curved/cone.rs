@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::body::{Body, Ruling};
+use super::body::{Body, Rim, Ruling};
 use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall};
 use crate::primitive::Cone;
 use crate::support::VertexId;
@@ -17,6 +17,19 @@ impl Body for Cone {
         std::iter::once(Ruling {
             axis: DVec3::Y,
             sine: slope / slope.hypot(1.0),
+        })
+    }
+
+    fn edge(&self, _: DVec3, _: VertexId) -> Option<[DVec3; 2]> {
+        None
+    }
+
+    fn rim(&self, dir: DVec3) -> Option<Rim> {
+        let is_apex = dir.y > self.slope() * dir.x.hypot(dir.z);
+        (!is_apex).then(|| Rim {
+            center: DVec3::NEG_Y * self.half_height(),
+            axis: DVec3::Y,
+            radius: self.rim_radius(),
         })
     }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::body::{Body, Ruling};
+use super::body::{Body, Rim, Ruling};
 use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall};
 use crate::primitive::Cylinder;
 use crate::support::VertexId;
@@ -16,6 +16,18 @@ impl Body for Cylinder {
         std::iter::once(Ruling {
             axis: DVec3::Y,
             sine: 0.0,
+        })
+    }
+
+    fn edge(&self, _: DVec3, _: VertexId) -> Option<[DVec3; 2]> {
+        None
+    }
+
+    fn rim(&self, dir: DVec3) -> Option<Rim> {
+        Some(Rim {
+            center: DVec3::Y * self.half_height().copysign(dir.y),
+            axis: DVec3::Y,
+            radius: self.rim_radius(),
         })
     }
 

@@ -26,6 +26,23 @@ pub struct Patch {
     references: [DVec3; 2],
     /// A length that rounding is relative to.
     size: f64,
+    extreme: CsoVertex,
+    found: Found,
+    /// How many places come from contacts of the frame before, and serve for proofs only.
+    guesses: usize,
+}
+
+/// How much of a patch was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Found {
+    /// Only its normal is known.
+    Normal,
+    /// The pieces without borders.
+    Pieces,
+    /// The extreme points that are over both pieces as well.
+    Extremes,
+    /// All places.
+    All,
 }
 
 impl Default for Patch {
@@ -38,6 +55,9 @@ impl Default for Patch {
             border_radii: [0.0; 2],
             references: [DVec3::X; 2],
             size: 0.0,
+            extreme: CsoVertex::default(),
+            found: Found::Normal,
+            guesses: 0,
         }
     }
 }
@@ -50,8 +70,37 @@ pub(super) struct PiecePoint {
 }
 
 impl Patch {
-    /// Finds the places along `normal`, along which `extreme` is extreme. Of rounded shapes it is the cores'
-    /// place that is deepest, moved along the normal; the others lie on pieces that are moved along their own.
+    /// Drops the last patch for that along `normal`, along which `extreme` is extreme.
+    pub(super) fn aim(&mut self, normal: DVec3, extreme: &CsoVertex) {
+        self.places.clear();
+        self.normal = normal;
+        self.extreme = *extreme;
+        self.found = Found::Normal;
+        self.guesses = 0;
+    }
+
+    /// Finds the pieces of the cores.
+    pub(super) fn find_cores<A: Body, B: Body>(&mut self, cso: &Cso<'_, A, B>) {
+        self.find_pieces(cso, [0.0; 2]);
+        self.found = Found::Pieces;
+    }
+
+    /// Adds a place at a point of the first shape, for proofs only, if it is over both pieces.
+    pub(super) fn add_guess(&mut self, at: DVec3) {
+        if let (Some(first), Some(second)) = (self.height_over(0, at), self.height_over(1, at)) {
+            let spots = [Spot::Inside; 2];
+            self.push(PiecePoint { at, spots }, [first, second]);
+        }
+        self.guesses = self.places.len();
+    }
+
+    /// Adds the extreme points that are over both pieces: these are enough for most proofs.
+    pub(super) fn find_extremes(&mut self) {
+        self.add_extremes();
+        self.found = Found::Extremes;
+    }
+
+    /// Finds the places along `normal`, along which `extreme` is extreme.
     pub fn find<A: Body, B: Body>(
         &mut self,
         cso: &Cso<'_, A, B>,
@@ -59,17 +108,43 @@ impl Patch {
         extreme: &CsoVertex,
         border_radii: [f64; 2],
     ) {
-        self.find_between(cso, normal, extreme, [0.0; 2]);
-        if border_radii == [0.0; 2] {
+        self.aim(normal, extreme);
+        self.complete(cso, border_radii);
+    }
+
+    /// Finds all places along the normal of the last answer, if they are not known. Of rounded shapes it is the
+    /// cores' place that is deepest, moved along the normal; the others lie on pieces that are moved along their own.
+    pub fn complete<A: Body, B: Body>(&mut self, cso: &Cso<'_, A, B>, border_radii: [f64; 2]) {
+        if self.found == Found::All {
             return;
         }
-        let separation = -normal.dot(extreme.w);
+        if self.found == Found::Normal {
+            self.find_cores(cso);
+        }
+        if self.found == Found::Pieces {
+            self.find_extremes();
+        }
+        self.places.drain(..self.guesses);
+        self.guesses = 0;
+        self.add_common_first();
+        if border_radii != [0.0; 2] {
+            self.find_around_cores(cso, border_radii);
+        }
+        self.found = Found::All;
+    }
+
+    fn find_around_cores<A: Body, B: Body>(&mut self, cso: &Cso<'_, A, B>, border_radii: [f64; 2]) {
+        let normal = self.normal;
+        let separation = -normal.dot(self.extreme.w);
         let limit = separation + SAME_GAP * cso.min_radius();
         let deepest = self
             .deepest()
             .filter(|place| place.distance <= limit)
             .copied();
-        self.find_between(cso, normal, extreme, border_radii);
+        self.places.clear();
+        self.find_pieces(cso, border_radii);
+        self.add_common();
+        self.add_extremes();
         if let Some(core) = deepest {
             self.places.push(ContactPlace {
                 on_1: core.on_1 + normal * border_radii[0],
@@ -80,19 +155,15 @@ impl Patch {
         }
     }
 
-    fn find_between<A: Body, B: Body>(
-        &mut self,
-        cso: &Cso<'_, A, B>,
-        normal: DVec3,
-        extreme: &CsoVertex,
-        border_radii: [f64; 2],
-    ) {
+    fn find_pieces<A: Body, B: Body>(&mut self, cso: &Cso<'_, A, B>, border_radii: [f64; 2]) {
         let [corners_1, corners_2] = &mut self.corners;
         corners_1.clear();
         corners_2.clear();
-        let outward_2 = -cso.pose.direction_to_2(normal);
-        let [id_1, id_2] = extreme.ids;
-        let piece_1 = cso.shape_1.piece(normal, id_1, border_radii[0], corners_1);
+        let outward_2 = -cso.pose.direction_to_2(self.normal);
+        let [id_1, id_2] = self.extreme.ids;
+        let piece_1 = cso
+            .shape_1
+            .piece(self.normal, id_1, border_radii[0], corners_1);
         let piece_2 = cso
             .shape_2
             .piece(outward_2, id_2, border_radii[1], corners_2);
@@ -108,12 +179,15 @@ impl Patch {
             *corner = cso.pose.point_to_1(*corner);
         }
         self.pieces = [piece_1, piece_2.to_frame_1(cso.pose)];
-        self.normal = normal;
         self.border_radii = border_radii;
         self.size = cso.size() + cso.center().length();
-        self.places.clear();
+    }
+
+    /// The same as [`add_common`](Self::add_common), before the places that are known.
+    fn add_common_first(&mut self) {
+        let extremes = self.places.len();
         self.add_common();
-        self.add_extremes(extreme);
+        self.places.rotate_left(extremes);
     }
 
     /// Drops the places that are not within these distances.
@@ -183,7 +257,8 @@ impl Patch {
     }
 
     /// Extreme points of the cores, moved along the normal, if they are over the other piece.
-    fn add_extremes(&mut self, extreme: &CsoVertex) {
+    fn add_extremes(&mut self) {
+        let extreme = self.extreme;
         let cores = [extreme.on_1, extreme.on_2()];
         for side in 0..2 {
             let spot = Spot::Extreme(extreme.ids[side]);

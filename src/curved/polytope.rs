@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::body::{Body, Ruling};
+use super::body::{Body, Rim, Ruling};
 use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall, across};
 use crate::support::{Polytope, VertexId};
 use crate::tuning::EDGE_ON;
@@ -19,6 +19,18 @@ impl<P: Polytope> Body for P {
             let axis = (self.vertex(to) - from).try_normalize()?;
             Some(Ruling { axis, sine: 0.0 })
         })
+    }
+
+    fn edge(&self, dir: DVec3, vertex: VertexId) -> Option<[DVec3; 2]> {
+        let from = self.vertex(vertex);
+        let ends = self.neighbors(vertex).map(|to| self.vertex(to));
+        let slope = |to: &DVec3| (*to - from).normalize_or(dir).dot(dir).abs();
+        let across = ends.min_by(|a, b| slope(a).total_cmp(&slope(b)));
+        across.map(|to| [from, to])
+    }
+
+    fn rim(&self, _: DVec3) -> Option<Rim> {
+        None
     }
 
     fn piece(
@@ -39,7 +51,9 @@ impl<P: Polytope> Body for P {
                 let normal = self.face_normal(face);
                 // A sliver has no normal, and a face seen edge-on is an edge.
                 if normal.dot(dir) <= EDGE_ON {
-                    return edge_piece(self, dir, vertex, border);
+                    let edge = self.edge(dir, vertex);
+                    let line = edge.and_then(|edge| line_piece(edge, dir, border));
+                    return line.unwrap_or(Piece::Point(self.vertex(vertex)));
                 }
                 let moved = normal * border;
                 corners.extend((0..len).map(|i| {
@@ -54,16 +68,6 @@ impl<P: Polytope> Body for P {
             }
         }
     }
-}
-
-/// The edge at a vertex, extreme along `dir`, that is most across that.
-fn edge_piece(shape: &impl Polytope, dir: DVec3, vertex: VertexId, border: f64) -> Piece {
-    let from = shape.vertex(vertex);
-    let ends = shape.neighbors(vertex).map(|to| shape.vertex(to));
-    let slope = |to: &DVec3| (*to - from).normalize_or(dir).dot(dir).abs();
-    let across = ends.min_by(|a, b| slope(a).total_cmp(&slope(b)));
-    let line = across.and_then(|to| line_piece([from, to], dir, border));
-    line.unwrap_or(Piece::Point(from))
 }
 
 /// The line of a capsule's side that is extreme along `dir`.

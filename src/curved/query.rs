@@ -6,13 +6,15 @@ use glam::DVec3;
 
 use super::body::Body;
 use super::patch::Patch;
-use super::stationary::{self, NormalSeparation};
+use super::rim_edge;
+use super::stationary::{self, Effort, NormalSeparation};
 use crate::epa::EpaScratch;
 use crate::gjk::SeparatingAxis;
+use crate::query::LastContacts;
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, VertexId};
 use crate::tolerance::DEPTH_GAP;
-use crate::tuning::TILT;
+use crate::tuning::{FLUSH_TIE, STILL, TILT};
 
 /// Memory for queries.
 #[derive(Clone, Debug, Default)]
@@ -41,7 +43,7 @@ pub enum CurvedAnswer {
     SpheresApart,
     /// The cores are farther apart than was asked about.
     Separated(SeparatingAxis),
-    /// The cores are this near, or overlap. The contact patch has the places.
+    /// The cores are this near, or overlap. The contact patch has the places once it is completed.
     Near {
         /// Of the cores.
         signed_distance: f64,
@@ -54,7 +56,7 @@ pub enum CurvedAnswer {
 
 /// Finds a normal that separates more than the one at hand, or as much.
 type FindNormal<A, B> =
-    fn(&Cso<'_, A, B>, &NormalSeparation, &mut Cost) -> Option<NormalSeparation>;
+    fn(&Cso<'_, A, B>, &NormalSeparation, Effort, &mut Cost) -> Option<NormalSeparation>;
 
 /// A query about two shapes, of which one is curved.
 pub struct CurvedQuery<'a, 'c, A, B> {
@@ -64,6 +66,8 @@ pub struct CurvedQuery<'a, 'c, A, B> {
     pub border_radii: [f64; 2],
     /// Answers beyond this distance of the cores are [`CurvedAnswer::Separated`].
     pub max_distance: f64,
+    /// The contacts of the frame before.
+    pub(crate) last: Option<&'a LastContacts>,
     /// Memory to work in.
     pub scratch: &'a mut CurvedScratch,
     /// Filled in with what the query cost.
@@ -137,18 +141,21 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         &mut self,
         at: &NormalSeparation,
     ) -> ControlFlow<CurvedAnswer, NormalSeparation> {
-        let (cso, max) = (self.cso, self.max_distance);
-        let steps: [FindNormal<A, B>; 3] = [
-            stationary::flat,
-            stationary::ruled,
-            stationary::along_rulings,
-        ];
         let mut best = *at;
-        for step in steps {
-            let Some(found) = step(cso, at, self.cost) else {
+        let steps: [(FindNormal<A, B>, Effort); 7] = [
+            (stationary::flat, Effort::Near),
+            (stationary::ruled, Effort::Near),
+            (stationary::along_rulings, Effort::Near),
+            (stationary::smooth, Effort::Near),
+            (stationary::flat, Effort::All),
+            (stationary::ruled, Effort::All),
+            (stationary::along_rulings, Effort::All),
+        ];
+        for (step, effort) in steps {
+            let Some(found) = step(self.cso, at, effort, self.cost) else {
                 continue;
             };
-            if found.distance > max {
+            if found.distance > self.max_distance {
                 return ControlFlow::Break(apart(&found));
             }
             // A worse one than is known cannot be proved.
@@ -167,18 +174,42 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         DEPTH_GAP * self.cso.min_radius()
     }
 
-    /// The answer along a normal, if its patch proves it.
+    /// The answer along a normal, if the extreme points or the patch prove it.
     fn prove(&mut self, found: &NormalSeparation) -> Option<CurvedAnswer> {
-        let patch = &mut self.scratch.patch;
-        patch.find(self.cso, found.normal, &found.extreme, self.border_radii);
-        let tolerance = DEPTH_GAP * self.cso.min_radius();
-        let is_proved = patch.proves(self.cso, found.distance, tolerance);
-        let deepest = patch.deepest().filter(|_| is_proved)?;
-        Some(CurvedAnswer::Near {
+        let near = |on_1| CurvedAnswer::Near {
             signed_distance: found.distance,
             normal: found.normal,
-            on_1: deepest.on_1,
-        })
+            on_1,
+        };
+        let tolerance = self.tolerance();
+        let moved = found.normal * self.border_radii[0];
+        let patch = &mut self.scratch.patch;
+        patch.aim(found.normal, &found.extreme);
+        if found.distance > 0.0 && found.extreme.w.length() <= found.distance + tolerance {
+            return Some(near(found.extreme.on_1 + moved));
+        }
+        patch.find_cores(self.cso);
+        let drift = STILL * self.cso.min_radius();
+        if let Some(last) = self
+            .last
+            .filter(|last| last.are_within(found.normal, drift))
+        {
+            patch.add_guess(last.middle_of_deepest(found.normal, FLUSH_TIE * tolerance));
+            if patch.proves(self.cso, found.distance, tolerance) {
+                return patch.deepest().map(|place| near(place.on_1 + moved));
+            }
+        }
+        patch.find_extremes();
+        if patch.proves(self.cso, found.distance, tolerance) {
+            return patch.deepest().map(|place| near(place.on_1 + moved));
+        }
+        if let Some(on_1) = rim_edge::proved_crossing(self.cso, found, tolerance) {
+            return Some(near(on_1 + moved));
+        }
+        patch.complete(self.cso, self.border_radii);
+        let is_proved = patch.proves(self.cso, found.distance, tolerance);
+        let deepest = patch.deepest().filter(|_| is_proved)?;
+        Some(near(deepest.on_1))
     }
 }
 

@@ -1,13 +1,39 @@
 //! Normals along which two shapes may be nearest or overlap least, by the pieces of surface that meet.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::body::{Body, Ruling};
+use super::curvature::Curvature;
 use super::piece::across;
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex};
 use crate::tolerance::{PARALLEL_AXES, SETTLED_ANGLE};
-use crate::tuning::{FIRST_STEP, NEAR_RULING};
+use crate::tuning::{FIRST_STEP, LONGEST_STEP, NEAR_RULING, SMALL_TURN};
+
+/// Which pieces of surface are looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Effort {
+    /// Those that the normal at hand hardly misses, as one of the frame before does.
+    Near,
+    /// All that it might belong to.
+    All,
+}
+
+impl Effort {
+    /// Whether to look at a flat side.
+    fn admits_flat(self, normal: DVec3, about: DVec3) -> bool {
+        self == Self::All || normal.distance_squared(about) < SMALL_TURN * SMALL_TURN
+    }
+
+    /// Whether to look at an edge or a ruled side.
+    fn admits(self, ruling: &Ruling, about: DVec3) -> bool {
+        let reach = match self {
+            Self::Near => SMALL_TURN,
+            Self::All => NEAR_RULING,
+        };
+        (ruling.axis.dot(about) - ruling.sine).abs() < reach
+    }
+}
 
 /// A normal, the vertex of the difference that is extreme along it, and how far apart the shapes are.
 #[derive(Clone, Copy, Debug)]
@@ -46,6 +72,7 @@ impl NormalSeparation {
 pub(super) fn flat<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
+    effort: Effort,
     cost: &mut Cost,
 ) -> Option<NormalSeparation> {
     let [id_1, id_2] = at.extreme.ids;
@@ -55,6 +82,7 @@ pub(super) fn flat<A: Body, B: Body>(
     let second = second.map(|normal| -cso.pose.direction_to_1(normal));
     let normals = [first, second].into_iter().flatten();
     normals
+        .filter(|normal| effort.admits_flat(*normal, at.normal))
         .map(|normal| NormalSeparation::along(cso, normal, &at.extreme, cost))
         .reduce(NormalSeparation::or)
 }
@@ -63,12 +91,13 @@ pub(super) fn flat<A: Body, B: Body>(
 pub(super) fn ruled<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
+    effort: Effort,
     cost: &mut Cost,
 ) -> Option<NormalSeparation> {
     let mut best: Option<NormalSeparation> = None;
     let of_first = cso.shape_1.rulings(at.normal, at.extreme.ids[0]);
-    for first in of_first.filter(|ruling| ruling.is_near(at.normal)) {
-        for second in rulings_2(cso, at).filter(|ruling| ruling.is_near(at.normal)) {
+    for first in of_first.filter(|ruling| effort.admits(ruling, at.normal)) {
+        for second in rulings_2(cso, at).filter(|ruling| effort.admits(ruling, at.normal)) {
             if let Some(normal) = suiting_both(&first, &second, at.normal) {
                 let found = NormalSeparation::along(cso, normal, &at.extreme, cost);
                 best = Some(best.map_or(found, |best| best.or(found)));
@@ -76,13 +105,6 @@ pub(super) fn ruled<A: Body, B: Body>(
         }
     }
     best
-}
-
-impl Ruling {
-    /// Whether a normal nearly suits it.
-    fn is_near(&self, normal: DVec3) -> bool {
-        (self.axis.dot(normal) - self.sine).abs() < NEAR_RULING
-    }
 }
 
 /// The rulings of shape 2 in frame 1, as the contact normal sees them.
@@ -120,13 +142,14 @@ fn suiting_both(first: &Ruling, second: &Ruling, about: DVec3) -> Option<DVec3> 
 pub(super) fn along_rulings<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
+    effort: Effort,
     cost: &mut Cost,
 ) -> Option<NormalSeparation> {
     let mut best: Option<NormalSeparation> = None;
     let of_first = cso.shape_1.rulings(at.normal, at.extreme.ids[0]);
     let rulings = of_first.chain(rulings_2(cso, at));
-    for ruling in rulings.filter(|ruling| ruling.is_near(at.normal)) {
-        if let Some(found) = along_ruling(cso, &ruling, at, cost) {
+    for ruling in rulings.filter(|ruling| effort.admits(ruling, at.normal)) {
+        if let Some(found) = along_ruling(cso, &ruling, at, effort, cost) {
             best = Some(best.map_or(found, |best| best.or(found)));
         }
     }
@@ -135,8 +158,44 @@ pub(super) fn along_rulings<A: Body, B: Body>(
 
 /// Steps of such a search. Each is a support pair.
 const MAX_STEPS: usize = 16;
+/// Steps of Newton's method, which doubles the digits in each.
+const MAX_NEWTON_STEPS: usize = 5;
+
+/// The normal near one at hand that separates most where no edge and no side bounds it: between vertices and
+/// rims. By Newton's method.
+pub(super) fn smooth<A: Body, B: Body>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+    _: Effort,
+    cost: &mut Cost,
+) -> Option<NormalSeparation> {
+    let mut found = *at;
+    for _ in 0..MAX_NEWTON_STEPS {
+        let (a, b) = found.normal.any_orthonormal_pair();
+        let curvature = Curvature::of(cso, &found)?;
+        let slope = DVec2::new(a.dot(found.extreme.w), b.dot(found.extreme.w));
+        let (aa, bb) = (
+            curvature.between(a, a) + found.distance,
+            curvature.between(b, b) + found.distance,
+        );
+        let ab = curvature.between(a, b);
+        let determinant = aa * bb - ab * ab;
+        let step =
+            DVec2::new(bb * slope.x - ab * slope.y, aa * slope.y - ab * slope.x) / -determinant;
+        if !(aa > 0.0 && determinant > 0.0 && step.length() < LONGEST_STEP) {
+            return None;
+        }
+        if step.length() < SETTLED_ANGLE {
+            return Some(found);
+        }
+        let normal = (found.normal + a * step.x + b * step.y).normalize();
+        found = NormalSeparation::along(cso, normal, &found.extreme, cost);
+    }
+    None
+}
 
 /// The circle of unit vectors with one sine to an axis.
+#[derive(Clone, Copy)]
 struct NormalCircle {
     center: DVec3,
     u: DVec3,
@@ -157,6 +216,18 @@ impl NormalCircle {
         }
     }
 
+    /// The circle with another first one, turned by nearly an angle that is small.
+    fn turned(&self, angle: f64) -> Self {
+        let tangent = 0.5 * angle;
+        let scale = 1.0 / (1.0 + tangent * tangent);
+        let (cos, sin) = ((1.0 - tangent * tangent) * scale, 2.0 * tangent * scale);
+        Self {
+            center: self.center,
+            u: self.u * cos + self.v * sin,
+            v: self.v * cos - self.u * sin,
+        }
+    }
+
     /// A normal, and the direction in which it turns.
     fn at(&self, angle: f64) -> [DVec3; 2] {
         let (sin, cos) = angle.sin_cos();
@@ -173,12 +244,12 @@ fn along_ruling<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     ruling: &Ruling,
     at: &NormalSeparation,
+    effort: Effort,
     cost: &mut Cost,
 ) -> Option<NormalSeparation> {
     let circle = NormalCircle::new(ruling, at.normal);
-    let [normal, turn] = circle.at(0.0);
-    let best = NormalSeparation::along(cso, normal, &at.extreme, cost);
-    let slope = -turn.dot(best.extreme.w);
+    let best = NormalSeparation::along(cso, circle.center + circle.u, &at.extreme, cost);
+    let slope = -circle.v.dot(best.extreme.w);
     if slope == 0.0 {
         return Some(best);
     }
@@ -189,6 +260,12 @@ fn along_ruling<A: Body, B: Body>(
         steps_left: MAX_STEPS,
         cost,
     };
+    if let Some(found) = search.by_newton(best) {
+        return Some(found);
+    }
+    if effort == Effort::Near {
+        return None;
+    }
     let bracket = search.bracket([0.0, slope])?;
     search.close(bracket);
     Some(search.best)
@@ -214,6 +291,28 @@ impl<A: Body, B: Body> CircleSearch<'_, '_, A, B> {
         let found = NormalSeparation::along(self.cso, normal, &near, self.cost);
         self.best = self.best.or(found);
         [angle, -turn.dot(found.extreme.w)]
+    }
+
+    /// Newton's method, as long as its steps are small and the extreme point moves smoothly.
+    fn by_newton(&mut self, mut found: NormalSeparation) -> Option<NormalSeparation> {
+        let mut circle = self.circle;
+        for _ in 0..MAX_NEWTON_STEPS {
+            let NormalCircle { center, u, v } = circle;
+            let w = found.extreme.w;
+            let slope = -v.dot(w);
+            let fall = Curvature::of(self.cso, &found)?.between(v, v) - u.dot(w);
+            let step = slope / fall;
+            if !(fall > 0.0 && step.abs() < LONGEST_STEP) {
+                return None;
+            }
+            if step.abs() < SETTLED_ANGLE {
+                return Some(found);
+            }
+            circle = circle.turned(step);
+            let normal = center + circle.u;
+            found = NormalSeparation::along(self.cso, normal, &found.extreme, self.cost);
+        }
+        None
     }
 
     /// Two angles between which the slope changes its sign.

@@ -11,6 +11,7 @@ use crate::support::{Support, VertexId};
 pub struct Cylinder {
     half_height: f64,
     rim: Rim,
+    radius: f64,
 }
 
 impl Cylinder {
@@ -19,6 +20,7 @@ impl Cylinder {
         Self {
             half_height,
             rim: Rim { radius },
+            radius: half_height.hypot(radius),
         }
     }
 
@@ -41,6 +43,6 @@ impl Support for Cylinder {
 
     #[inline]
     fn radius(&self) -> f64 {
-        self.half_height.hypot(self.rim.radius)
+        self.radius
     }
 }

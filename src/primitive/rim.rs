@@ -13,8 +13,7 @@ impl Rim {
     /// that is square to the axis. Along the axis the whole disc ties, and the point is its centre.
     #[inline]
     pub fn support(&self, dir: DVec3, height: f64) -> (DVec3, f64) {
-        // `hypot`, so that directions of any length keep their direction.
-        let length = dir.x.hypot(dir.z);
+        let length = length_across(dir);
         let point = if length > 0.0 {
             let (x, z) = (dir.x / length, dir.z / length);
             DVec3::new(self.radius * x, height, self.radius * z)
@@ -24,3 +23,19 @@ impl Rim {
         (point, self.radius * length)
     }
 }
+
+/// The length of the part of a vector that is square to the y axis. Directions of any length keep their
+/// direction.
+#[inline]
+fn length_across(dir: DVec3) -> f64 {
+    let squared = dir.x * dir.x + dir.z * dir.z;
+    // perf: `hypot` is a call, which took a seventh of an update.
+    if squared.is_normal() && squared > SAFE_SQUARE {
+        squared.sqrt()
+    } else {
+        dir.x.hypot(dir.z)
+    }
+}
+
+/// Squares above it have all their digits.
+const SAFE_SQUARE: f64 = f64::MIN_POSITIVE / f64::EPSILON;

@@ -1,12 +1,13 @@
 //! Cylinders and cones with each other and with everything else, against the oracle: signed distances, normals,
 //! and the gap at each contact, without a past and with one, in either order.
 
-use isa_gjk::IsaGjkDispatcher;
+use isa_gjk::{IsaGjkDispatcher, Stage};
 use parry3d::math::Vector;
 use parry3d::shape::SharedShape;
 use testkit::curved::{Body, Faults, Judge, Meeting, tilted};
 use testkit::generate::Rng;
 use testkit::memory::{Manifold, Memory, cold_manifold};
+use testkit::pair::{PREDICTION, trajectory};
 use testkit::pose::ExactPose;
 
 /// The promise, as a share of the smaller diameter.
@@ -119,4 +120,34 @@ fn sharp_pairs_are_right() {
 #[test]
 fn rounded_pairs_are_right() {
     check(0.07, 332);
+}
+
+/// Where a rim crosses an edge, no patch proves the depth. EPA took four times as long as the whole update.
+#[test]
+fn a_rim_across_an_edge_proves_its_depth_without_a_search() {
+    let bodies = [
+        Body::cuboid(Vector::new(0.4, 0.5, 0.6), 0.0),
+        Body::cylinder(0.5, 0.4, 0.0),
+    ];
+    let shapes = bodies.each_ref().map(|body| body.shape.clone());
+    for gap in [-0.001, -0.02, -0.05] {
+        let dispatcher = IsaGjkDispatcher::default();
+        let mut memory = Memory::default();
+        for (frame, pose) in trajectory(&shapes, gap, 1.0).iter().enumerate() {
+            let [a, b] = &shapes;
+            let manifold = memory.update(&dispatcher, pose, [a, b], PREDICTION);
+            if frame % 10 == 0 {
+                let exact = ExactPose {
+                    rotation: pose.rotation.as_dquat().normalize(),
+                    translation: pose.translation.as_dvec3(),
+                };
+                let judge = Judge::new([&bodies[0], &bodies[1]], exact);
+                let mut faults = judge.manifold(manifold, PREDICTION.into());
+                faults.gap = 0.0;
+                assert!(faults.are_within(PROMISE), "{gap}, {frame}: {faults:?}");
+            }
+        }
+        let searches = dispatcher.stats().answered[Stage::WarmEpa as usize];
+        assert!(searches < 10, "{searches} searches at {gap}");
+    }
 }

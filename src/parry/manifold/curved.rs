@@ -11,7 +11,7 @@ use crate::manifold::Contacts;
 use crate::parry::constraints::{ConstrainedPair, Constraints};
 use crate::parry::order::PairOrder;
 use crate::parry::pair::valid_pose;
-use crate::query::{Feature, PairMemory, Proximity};
+use crate::query::{Feature, LastContacts, PairMemory, Proximity};
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, FaceId, VertexId};
 use crate::tolerance::{MIN_DIRECTED_DISTANCE, UNCORRECTED};
@@ -43,10 +43,12 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         let mut manifold =
             KernelManifold::with_borders(self.manifold, pair.order, AxisFrame::of(&cso));
         let mut cost = Cost::default();
+        let last = manifold.last_contacts(&pose);
         let mut query = CurvedQuery {
             cso: &cso,
             border_radii: pair.border_radii,
             max_distance: max_distance + borders,
+            last: last.as_ref(),
             scratch,
             cost: &mut cost,
         };
@@ -66,9 +68,10 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
                     normal,
                     on_1,
                     max_distance,
+                    last: last.as_ref(),
                 };
                 let is_kept = if let [Constraints::None, Constraints::None] = self.constraints {
-                    near.update(&mut manifold, &scratch.patch)
+                    near.update(&mut manifold, &mut scratch.patch)
                 } else {
                     let constraints = (self.constraints, self.pos12);
                     near.update_constrained(&mut manifold, constraints, &mut scratch.patch);
@@ -109,6 +112,7 @@ struct Near<'a, 'c, A, B> {
     normal: DVec3,
     on_1: DVec3,
     max_distance: f64,
+    last: Option<&'a LastContacts>,
 }
 
 impl<A: Body, B: Body> Near<'_, '_, A, B> {
@@ -126,16 +130,16 @@ impl<A: Body, B: Body> Near<'_, '_, A, B> {
     fn update<M, C: Default + Copy>(
         &self,
         manifold: &mut KernelManifold<'_, M, C>,
-        patch: &Patch,
+        patch: &mut Patch,
     ) -> bool {
         let near = self.proximity();
         let normals = Normals::of(&near, self.cso.pose);
-        let last = manifold.last_contacts(self.cso.pose);
         let radius = self.cso.min_radius();
         let is_kept = manifold
-            .keep_places(last.as_ref(), self.least, &normals, radius)
+            .keep_places(self.last, self.least, &normals, radius)
             .is_some();
         if !is_kept {
+            patch.complete(self.cso, self.border_radii);
             manifold.set_contacts(normals.rounded, &self.contacts(patch));
         }
         is_kept

@@ -86,6 +86,7 @@ impl ContactQuery<'_> {
             cso: &pair.cso(&pose),
             border_radii: [0.0; 2],
             max_distance: f64::INFINITY,
+            last: None,
             scratch: &mut workspace.curved,
             cost: &mut Cost::default(),
         };

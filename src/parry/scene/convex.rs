@@ -4,7 +4,7 @@ use glam::DVec3;
 use parry3d::query::Unsupported;
 use parry3d::shape::{Shape, ShapeType, TypedShape};
 
-use crate::curved::{Body, Piece, Ruling};
+use crate::curved::{Body, Piece, Rim, Ruling};
 use crate::map_pair::map_pair;
 use crate::parry::convert;
 use crate::parry::order::PairOrder;
@@ -137,6 +137,14 @@ impl Body for Core {
             places.for_each(|(place, ruling)| *place = Some(ruling));
         });
         rulings.into_iter().flatten()
+    }
+
+    fn edge(&self, dir: DVec3, vertex: VertexId) -> Option<[DVec3; 2]> {
+        of_shape!(self, shape => shape.edge(dir, vertex))
+    }
+
+    fn rim(&self, dir: DVec3) -> Option<Rim> {
+        of_shape!(self, shape => shape.rim(dir))
     }
 
     fn piece(
