@@ -211,6 +211,15 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
         ]
     }
 
+    /// The vertices if the shapes have them, and others if not.
+    #[inline]
+    pub fn clamp_vertices(&self, [id_1, id_2]: [VertexId; 2]) -> [VertexId; 2] {
+        [
+            self.shape_1.clamp_vertex(id_1),
+            self.shape_2.clamp_vertex(id_2),
+        ]
+    }
+
     /// The extreme vertex from the centre towards the origin: the first vertex of a cold search. If the
     /// shapes are round, they are nearest there.
     pub fn vertex_towards_origin(&self, cost: &mut Cost) -> CsoVertex {

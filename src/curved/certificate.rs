@@ -76,13 +76,8 @@ impl Patch {
         let points = [place.on_1, place.on_2];
         [0, 1].map(|side| {
             let border = self.border(side);
-            let outward = if side == 0 {
-                self.normal()
-            } else {
-                -self.normal()
-            };
             let normal = match (&self.pieces[side], place.features[side]) {
-                (Piece::Point(_), _) | (_, Feature::Vertex(_)) => outward,
+                (Piece::Point(_), _) | (_, Feature::Vertex(_)) => self.outward(side),
                 (Piece::Flat(flat), _) => flat.normal,
                 (Piece::Line(line), _) => line.surface.normal_at(points[side]),
             };
@@ -100,12 +95,7 @@ impl Patch {
         else {
             return 0.0;
         };
-        let outward = if side == 0 {
-            self.normal()
-        } else {
-            -self.normal()
-        };
-        if (outward.dot(surface.axis) - surface.sine()).abs() > SAME_NORMAL {
+        if (self.outward(side).dot(surface.axis) - surface.sine()).abs() > SAME_NORMAL {
             return 0.0;
         }
         let [low, high] = ends.map(|end| end.dot(surface.axis));
@@ -118,12 +108,7 @@ impl Patch {
         let Some(flat @ Flat { side: face, .. }) = self.flat(side) else {
             return 0.0;
         };
-        let outward = if side == 0 {
-            self.normal()
-        } else {
-            -self.normal()
-        };
-        if face.normal.distance(outward) > SAME_NORMAL {
+        if face.normal.distance(self.outward(side)) > SAME_NORMAL {
             return 0.0;
         }
         flat.inset(at).unwrap_or(0.0)

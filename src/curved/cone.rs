@@ -7,16 +7,23 @@ use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBal
 use crate::primitive::Cone;
 use crate::support::VertexId;
 
+/// The sine and the cosine of the angle between the side's normals and the base.
+fn lean(cone: &Cone) -> [f64; 2] {
+    let slope = cone.slope();
+    let length = slope.hypot(1.0);
+    [slope / length, 1.0 / length]
+}
+
 impl Body for Cone {
     fn flat_normal(&self, dir: DVec3, _: VertexId) -> Option<DVec3> {
         (dir.y < 0.0).then_some(DVec3::NEG_Y)
     }
 
     fn rulings(&self, _: DVec3, _: VertexId) -> impl Iterator<Item = Ruling> {
-        let slope = self.slope();
+        let [sine, _] = lean(self);
         std::iter::once(Ruling {
             axis: DVec3::Y,
-            sine: slope / slope.hypot(1.0),
+            sine,
         })
     }
 
@@ -35,8 +42,7 @@ impl Body for Cone {
 
     fn piece(&self, dir: DVec3, _: VertexId, border: f64, _: &mut Vec<(DVec3, VertexId)>) -> Piece {
         let (half_height, radius) = (self.half_height(), self.rim_radius());
-        let slope = self.slope();
-        let (sine, cosine) = (slope / slope.hypot(1.0), 1.0 / slope.hypot(1.0));
+        let [sine, cosine] = lean(self);
         if -dir.y >= cosine * dir.x.hypot(dir.z) + sine * dir.y {
             let offset = half_height + border;
             return Piece::Flat(FlatSide {
@@ -57,7 +63,7 @@ impl Body for Cone {
                 origin: DVec3::ZERO,
                 axis: DVec3::Y,
                 radius: 0.5 * radius + border / cosine,
-                slope: -slope,
+                slope: -self.slope(),
             },
             ball: TangentBall {
                 growth: [2.0 * half_height / (1.0 + sine), radius / cosine],

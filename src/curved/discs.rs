@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::outline::circle_crossings;
-use super::patch::{Patch, PiecePoint};
+use super::patch::{Patch, PiecePoint, by_side};
 use super::piece::{FlatSide, Outline, Piece, across};
 use super::place::Spot;
 use crate::tolerance::{LEVEL, ON_OUTLINE};
@@ -23,15 +23,6 @@ const SECTORS: [[f64; 2]; 8] = {
         [half, -half],
     ]
 };
-
-/// The heights of a point that is on one of the two pieces.
-fn on_side(side: usize, other: f64) -> [f64; 2] {
-    if side == 0 {
-        [0.0, other]
-    } else {
-        [other, 0.0]
-    }
-}
 
 impl Patch {
     /// The direction in the plane of a flat side in which its contacts are deepest, and how much it
@@ -63,17 +54,15 @@ impl Patch {
             let [cos, sin] = SECTORS[sector];
             center + (u * cos + v * sin) * radius
         };
-        let mut spots = [Spot::Inside; 2];
-        let mut push_sector = |patch: &mut Self, sector: usize, is_over: bool| {
-            spots[side] = Spot::Arc(sector);
+        let push_sector = |patch: &mut Self, sector: usize, is_over: bool| {
             let point = PiecePoint {
                 at: rim(sector),
-                spots,
+                spots: by_side(side, [Spot::Arc(sector), Spot::Inside]),
             };
             match patch.flat(1 - side) {
                 Some(other) if is_over => {
                     let height = other.height(point.at);
-                    patch.push(point, on_side(side, height));
+                    patch.push(point, by_side(side, [0.0, height]));
                 }
                 _ => patch.push_over(side, point),
             }
@@ -111,8 +100,7 @@ impl Patch {
         for i in 0..count {
             let (from, id) = self.corners[side][i];
             let (to, _) = self.corners[side][(i + 1) % count];
-            let mut spots = [Spot::Inside; 2];
-            spots[side] = Spot::Corner(id);
+            let spots = by_side(side, [Spot::Corner(id), Spot::Inside]);
             self.push_over(side, PiecePoint { at: from, spots });
             let Some(disc) = self.flat(1 - side) else {
                 return;
@@ -123,8 +111,7 @@ impl Patch {
             };
             for (number, share) in shares.into_iter().enumerate() {
                 if (0.0..=1.0).contains(&share) {
-                    spots[side] = Spot::Side(id);
-                    spots[1 - side] = Spot::Crossing(number);
+                    let spots = by_side(side, [Spot::Side(id), Spot::Crossing(number)]);
                     let at = from.lerp(to, share);
                     self.push_over(side, PiecePoint { at, spots });
                 }
@@ -157,15 +144,9 @@ impl Patch {
         for side in 0..2 {
             if let Some(down) = self.lean(side, flats[side]) {
                 let (center, radius) = circles[side];
-                let mut spots = [Spot::Inside; 2];
-                spots[side] = Spot::Arc(0);
-                self.push_over(
-                    side,
-                    PiecePoint {
-                        at: center + down * radius,
-                        spots,
-                    },
-                );
+                let at = center + down * radius;
+                let spots = by_side(side, [Spot::Arc(0), Spot::Inside]);
+                self.push_over(side, PiecePoint { at, spots });
             }
         }
     }

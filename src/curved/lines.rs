@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::patch::{Patch, PiecePoint};
-use super::piece::{Generator, RuledSurface};
+use super::patch::{Patch, PiecePoint, by_side};
+use super::piece::Generator;
 use super::place::Spot;
 use crate::tolerance::ON_OUTLINE;
 use crate::tuning::{SHORT_LINE, SIDE_BY_SIDE_SINE};
@@ -21,14 +21,8 @@ impl Patch {
         for (number, share) in shares.into_iter().enumerate() {
             let at = a.lerp(b, share);
             let height = self.flat(1 - side).map_or(f64::NAN, |flat| flat.height(at));
-            let mut spots = [Spot::Inside; 2];
-            spots[side] = Spot::End(number);
-            let heights = if side == 0 {
-                [0.0, height]
-            } else {
-                [height, 0.0]
-            };
-            self.push(PiecePoint { at, spots }, heights);
+            let spots = by_side(side, [Spot::End(number), Spot::Inside]);
+            self.push(PiecePoint { at, spots }, by_side(side, [0.0, height]));
         }
     }
 
@@ -109,8 +103,8 @@ impl Patch {
         let share = if total > 0.0 { local[0] / total } else { 0.5 };
         // Between the axes in proportion to the radii the surfaces are nearest.
         let place = p1 + beside * (beside.dot(p2 - p1) * share);
-        let out = exit(&lines[0].surface, lines[0], place, self.normal())?;
-        let back = exit(&lines[1].surface, lines[1], place, -self.normal())?;
+        let out = lines[0].exit(place, self.normal())?;
+        let back = lines[1].exit(place, -self.normal())?;
         Some((place, [out, -back]))
     }
 
@@ -139,24 +133,4 @@ impl Patch {
         });
         beyond[0].max(beyond[1])
     }
-}
-
-/// Where the line through `p` along `outward` leaves the surface of a piece, near the piece itself.
-pub(super) fn exit(
-    surface: &RuledSurface,
-    line: &Generator,
-    p: DVec3,
-    outward: DVec3,
-) -> Option<f64> {
-    let normal = surface.normal_at(line.ends[0].midpoint(line.ends[1]));
-    let about = normal.dot(line.ends[0] - p) / normal.dot(outward);
-    let at = p + outward * about;
-    // On the line itself rounding may hide the root.
-    let [a, b] = line.ends;
-    let along = b - a;
-    let share = ((at - a).dot(along) / along.length_squared()).clamp(0.0, 1.0);
-    if at.distance_squared(a + along * share) <= 1e-24 * along.length_squared() {
-        return Some(about);
-    }
-    surface.exit(p, outward, about)
 }

@@ -5,7 +5,6 @@ use std::ops::RangeInclusive;
 use glam::DVec3;
 
 use super::body::Body;
-use super::lines::exit;
 use super::outline::Flat;
 use super::piece::{Outline, Piece};
 use super::place::Spot;
@@ -67,6 +66,15 @@ impl Default for Patch {
 pub(super) struct PiecePoint {
     pub at: DVec3,
     pub spots: [Spot; 2],
+}
+
+/// Two values in the order of the shapes. The first one is that of `side`.
+pub(super) fn by_side<T>(side: usize, [mine, other]: [T; 2]) -> [T; 2] {
+    if side == 0 {
+        [mine, other]
+    } else {
+        [other, mine]
+    }
 }
 
 impl Patch {
@@ -214,8 +222,18 @@ impl Patch {
         self.normal
     }
 
+    /// The direction along the normal out of a shape.
+    pub(super) fn outward(&self, side: usize) -> DVec3 {
+        if side == 0 { self.normal } else { -self.normal }
+    }
+
     pub(super) fn border(&self, side: usize) -> f64 {
         self.border_radii[side]
+    }
+
+    /// How far along the normal the borders are from extreme points of the cores.
+    fn border_heights(&self) -> [f64; 2] {
+        [self.border_radii[0], -self.border_radii[1]]
     }
 
     /// The widths of both borders.
@@ -260,23 +278,15 @@ impl Patch {
     fn add_extremes(&mut self) {
         let extreme = self.extreme;
         let cores = [extreme.on_1, extreme.on_2()];
-        for side in 0..2 {
+        for (side, at) in cores.into_iter().enumerate() {
             let spot = Spot::Extreme(extreme.ids[side]);
-            let mut spots = [Spot::Inside; 2];
-            spots[side] = spot;
-            let outward = if side == 0 { 1.0 } else { -1.0 };
-            let mine = outward * self.border_radii[side];
             let candidate = PiecePoint {
-                at: cores[side],
-                spots,
+                at,
+                spots: by_side(side, [spot, Spot::Inside]),
             };
-            if let Some(other) = self.height_over(1 - side, cores[side]) {
-                let heights = if side == 0 {
-                    [mine, other]
-                } else {
-                    [other, mine]
-                };
-                self.push(candidate, heights);
+            let mine = self.border_heights()[side];
+            if let Some(other) = self.height_over(1 - side, at) {
+                self.push(candidate, by_side(side, [mine, other]));
             }
         }
     }
@@ -289,8 +299,8 @@ impl Patch {
                 flat.is_under(p).then(|| flat.height(p))
             }
             Piece::Line(line) => {
-                let outward = if side == 0 { self.normal } else { -self.normal };
-                let height = exit(&line.surface, line, p, outward)?;
+                let outward = self.outward(side);
+                let height = line.exit(p, outward)?;
                 let at = p + outward * height;
                 let [low, high] = line.ends.map(|end| line.surface.axis.dot(end - at));
                 let is_between = low.min(high) <= ON_OUTLINE * self.size
@@ -300,9 +310,7 @@ impl Patch {
             Piece::Point(core) => {
                 let height = self.normal.dot(*core - p);
                 let aside = (*core - p - self.normal * height).length();
-                let outward = if side == 0 { 1.0 } else { -1.0 };
-                (aside <= ON_OUTLINE * self.size)
-                    .then(|| height + outward * self.border_radii[side])
+                (aside <= ON_OUTLINE * self.size).then(|| height + self.border_heights()[side])
             }
         }
     }
@@ -322,12 +330,7 @@ impl Patch {
     /// A candidate on a piece, if it is over the other one.
     pub(super) fn push_over(&mut self, side: usize, candidate: PiecePoint) {
         if let Some(height) = self.height_over(1 - side, candidate.at) {
-            let heights = if side == 0 {
-                [0.0, height]
-            } else {
-                [height, 0.0]
-            };
-            self.push(candidate, heights);
+            self.push(candidate, by_side(side, [0.0, height]));
         }
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::pose::RelativePose;
-use crate::tolerance::SAME_NORMAL;
+use crate::tolerance::{ON_OUTLINE, SAME_NORMAL};
 
 /// A piece of the surface of a shape, moved outwards by the width of its border.
 #[derive(Clone, Copy, Debug)]
@@ -122,6 +122,24 @@ impl Piece {
             }),
             Self::Point(p) => Self::Point(pose.point_to_1(p)),
         }
+    }
+}
+
+impl Generator {
+    /// How far along `outward` the line through `p` leaves the surface, near this line.
+    pub fn exit(&self, p: DVec3, outward: DVec3) -> Option<f64> {
+        let [a, b] = self.ends;
+        let normal = self.surface.normal_at(a.midpoint(b));
+        let about = normal.dot(a - p) / normal.dot(outward);
+        let at = p + outward * about;
+        // On the line itself rounding may hide the root.
+        let along = b - a;
+        let squared = along.length_squared();
+        let share = ((at - a).dot(along) / squared).clamp(0.0, 1.0);
+        if at.distance_squared(a + along * share) <= ON_OUTLINE * ON_OUTLINE * squared {
+            return Some(about);
+        }
+        self.surface.exit(p, outward, about)
     }
 }
 

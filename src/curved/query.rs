@@ -10,7 +10,7 @@ use super::rim_edge;
 use super::stationary::{self, Effort, NormalSeparation};
 use crate::epa::EpaScratch;
 use crate::gjk::SeparatingAxis;
-use crate::query::LastContacts;
+use crate::query::{LastContacts, Start};
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, VertexId};
 use crate::tolerance::DEPTH_GAP;
@@ -80,7 +80,10 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         if self.cso.are_spheres_apart(self.max_distance) {
             return Some((CurvedAnswer::SpheresApart, Stage::BoundingSpheres));
         }
-        let is_warm = !matches!(hint, Hint::None);
+        let start = match hint {
+            Hint::None => Start::Cold,
+            _ => Start::Warm,
+        };
         let mut at = self.along_hint(hint);
         if at.distance <= self.max_distance && !matches!(hint, Hint::Contact(..)) {
             at = at.or(self.tilted(&at));
@@ -93,16 +96,11 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
             ControlFlow::Continue(best) => best,
         };
         let is_deep = matches!(hint, Hint::Contact(_, true));
-        if !is_deep && let Some(found) = self.by_gjk(&at, is_warm) {
+        if !is_deep && let Some(found) = self.by_gjk(&at, start) {
             return Some(found);
         }
-        let stage = if is_warm {
-            Stage::WarmEpa
-        } else {
-            Stage::ColdEpa
-        };
         let answer = self.by_epa(best, is_deep)?;
-        Some((answer, stage))
+        Some((answer, start.epa()))
     }
 
     /// Along what is remembered, or along the line of centres.
@@ -113,13 +111,7 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
                 let axis = cso.towards_origin();
                 (axis, cso.start_vertices(axis))
             }
-            Hint::Apart(axis, [id_1, id_2]) => {
-                let ids = [
-                    cso.shape_1.clamp_vertex(id_1),
-                    cso.shape_2.clamp_vertex(id_2),
-                ];
-                (axis, ids)
-            }
+            Hint::Apart(axis, ids) => (axis, cso.clamp_vertices(ids)),
             Hint::Contact(normal, _) => (normal, cso.start_vertices(normal)),
         };
         let start = CsoVertex {

@@ -9,10 +9,10 @@ use super::query::{CurvedAnswer, CurvedQuery, apart};
 use super::stationary::NormalSeparation;
 use crate::epa::{self, DepthSearch};
 use crate::gjk::{self, Outcome};
+use crate::query::{Start, moved_apart};
 use crate::simplex::Preferred;
 use crate::stats::Stage;
-use crate::support::{Cso, CsoVertex};
-use crate::tolerance::{FINE_GAP, SAME_GAP, WITNESS_GAP};
+use crate::tolerance::{FINE_GAP, SAME_GAP};
 use crate::tuning::COARSE_GAP;
 
 impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
@@ -21,19 +21,15 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
     pub(super) fn by_gjk(
         &mut self,
         at: &NormalSeparation,
-        is_warm: bool,
+        start: Start,
     ) -> Option<(CurvedAnswer, Stage)> {
-        let stage = if is_warm {
-            Stage::WarmGjk
-        } else {
-            Stage::ColdGjk
-        };
+        let stage = start.gjk();
         let size = self.cso.size();
-        let (mut start, mut count) = ([at.extreme; 3], 1);
+        let (mut vertices, mut count) = ([at.extreme; 3], 1);
         for gap in [COARSE_GAP, FINE_GAP].map(|gap| gap * self.cso.min_radius()) {
             let outcome = gjk::distance_within::<Preferred, _, _>(
                 self.cso,
-                &start[..count],
+                &vertices[..count],
                 self.max_distance,
                 gap / size,
                 self.cost,
@@ -61,7 +57,7 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
                 ));
             }
             count = 0;
-            for (place, vertex) in start.iter_mut().zip(closest.simplex.vertices()) {
+            for (place, vertex) in vertices.iter_mut().zip(closest.simplex.vertices()) {
                 *place = *vertex;
                 count += 1;
             }
@@ -98,7 +94,7 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
                         ControlFlow::Continue(found) => best.or(found),
                     };
                     if found.depth < 0.0 {
-                        let apart = self.by_gjk(&best, true).map(|(answer, _)| answer);
+                        let apart = self.by_gjk(&best, Start::Warm).map(|(answer, _)| answer);
                         return apart.or_else(|| Some(self.along(&best, on_1)));
                     }
                 }
@@ -128,24 +124,17 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         }
     }
 
-    /// Where the first core is deepest along a normal: where it is nearest once the cores are moved apart.
+    /// Where the first core is deepest along a normal.
     fn witness(&mut self, best: &NormalSeparation) -> Option<DVec3> {
-        let radius = self.cso.min_radius();
-        let way = best.normal * (WITNESS_GAP * radius - best.distance);
-        let pose = self.cso.pose.moved(way);
-        let apart = Cso {
-            pose: &pose,
-            ..*self.cso
-        };
-        let start = CsoVertex {
-            w: best.extreme.w - way,
-            ..best.extreme
-        };
-        let gap = FINE_GAP * radius / apart.size();
-        let far = f64::INFINITY;
-        match gjk::distance_within::<Preferred, _, _>(&apart, &[start], far, gap, self.cost) {
-            Outcome::Disjoint(closest) | Outcome::Unsure(closest) => Some(closest.on_1),
-            _ => None,
-        }
+        let (cso, normal) = (self.cso, best.normal);
+        let closest = moved_apart(
+            cso,
+            normal * -best.distance,
+            normal,
+            |apart, cost| [apart.support(normal, best.extreme.ids, cost)],
+            FINE_GAP * cso.min_radius() / cso.size(),
+            self.cost,
+        )?;
+        Some(closest.on_1)
     }
 }

@@ -4,13 +4,13 @@
 use glam::DVec3;
 use parry3d::math::Real;
 use parry3d::shape::{
-    Cone as ParryCone, Cuboid, Cylinder as ParryCylinder, HalfSpace as ParryHalfSpace,
-    Segment as ParrySegment, Triangle,
+    Ball as ParryBall, Capsule as ParryCapsule, Cone as ParryCone, Cuboid,
+    Cylinder as ParryCylinder, HalfSpace as ParryHalfSpace, Segment as ParrySegment, Shape,
+    ShapeType, Triangle, TypedShape,
 };
 
-use crate::curved::Body;
 use crate::pose::unit_scale;
-use crate::primitive::{Cone, CuboidPolytope, Cylinder, Segment, TrianglePolytope};
+use crate::primitive::{Ball, Cone, CuboidPolytope, Cylinder, Segment, TrianglePolytope};
 use crate::tolerance::{MIN_BOX_THICKNESS, MIN_EXTENT};
 
 /// The half-space beneath the plane through its origin with this normal.
@@ -26,29 +26,87 @@ pub(crate) fn half_space(half_space: &ParryHalfSpace) -> Option<HalfSpace> {
     })
 }
 
-/// A shape of parry with a curved surface.
-pub(crate) trait CurvedShape {
-    /// The shape for the kernels; `None` if it has no volume.
-    fn kernel(&self) -> Option<impl Body>;
+/// A convex shape other than a hull, without its border.
+pub(crate) enum Core {
+    Ball(Ball),
+    Segment(Segment),
+    Triangle(TrianglePolytope),
+    Cuboid(CuboidPolytope),
+    Cylinder(Cylinder),
+    Cone(Cone),
 }
 
-impl CurvedShape for ParryCylinder {
-    fn kernel(&self) -> Option<impl Body> {
-        let (half_height, radius) = (positive(self.half_height)?, positive(self.radius)?);
-        Some(Cylinder::new(half_height, radius))
+impl Core {
+    /// With the radius of the border.
+    pub fn of(shape: &dyn Shape) -> Option<(Self, Real)> {
+        // The typed shape of a user's own shape may only be similar.
+        match shape.shape_type() {
+            ShapeType::Custom => None,
+            _ => Self::of_typed(shape.as_typed_shape()),
+        }
+    }
+
+    /// Like [`of`](Self::of), of a shape that is no user's own.
+    #[inline]
+    pub fn of_typed(shape: TypedShape<'_>) -> Option<(Self, Real)> {
+        // Each core is written once, into the answer: copies of merged branches cost as much as a support.
+        match shape {
+            TypedShape::Ball(shape) => Some((Self::Ball(ball(shape)?), shape.radius)),
+            TypedShape::Segment(shape) => Some((Self::Segment(segment(shape, 0.0)?), 0.0)),
+            TypedShape::Capsule(ParryCapsule {
+                segment: axis,
+                radius,
+            }) => Some((Self::Segment(segment(axis, *radius)?), *radius)),
+            TypedShape::Triangle(shape) => Some((Self::Triangle(triangle(shape)?), 0.0)),
+            TypedShape::RoundTriangle(round) => {
+                let core = triangle(&round.inner_shape)?;
+                Some((Self::Triangle(core), round.border_radius))
+            }
+            TypedShape::Cuboid(shape) => Some((Self::Cuboid(cuboid(shape)?), 0.0)),
+            TypedShape::RoundCuboid(round) => {
+                let core = cuboid(&round.inner_shape)?;
+                Some((Self::Cuboid(core), round.border_radius))
+            }
+            TypedShape::Cylinder(shape) => Some((Self::Cylinder(cylinder(shape)?), 0.0)),
+            TypedShape::RoundCylinder(round) => {
+                let core = cylinder(&round.inner_shape)?;
+                Some((Self::Cylinder(core), round.border_radius))
+            }
+            TypedShape::Cone(shape) => Some((Self::Cone(cone(shape)?), 0.0)),
+            TypedShape::RoundCone(round) => {
+                let core = cone(&round.inner_shape)?;
+                Some((Self::Cone(core), round.border_radius))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether its surface is curved, so that it is no polytope.
+    pub fn is_curved(&self) -> bool {
+        matches!(self, Self::Cylinder(_) | Self::Cone(_))
     }
 }
 
-impl CurvedShape for ParryCone {
-    fn kernel(&self) -> Option<impl Body> {
-        let (half_height, radius) = (positive(self.half_height)?, positive(self.radius)?);
-        Some(Cone::new(half_height, radius))
-    }
+fn ball(ball: &ParryBall) -> Option<Ball> {
+    positive(ball.radius).map(Ball::new)
+}
+
+#[inline]
+fn segment(segment: &ParrySegment, border_radius: Real) -> Option<Segment> {
+    positive(segment.length() + border_radius)?;
+    let ends = [segment.a, segment.b].map(|p| p.as_dvec3());
+    Some(Segment::new(ends, border_radius.into()))
+}
+
+#[inline]
+fn triangle(triangle: &Triangle) -> Option<TrianglePolytope> {
+    let corners = [triangle.a, triangle.b, triangle.c].map(|p| p.as_dvec3());
+    TrianglePolytope::new(corners)
 }
 
 /// `None` for a box that is only a segment or a point: none of its faces has a plane.
 #[inline]
-pub(crate) fn cuboid(cuboid: &Cuboid) -> Option<CuboidPolytope> {
+fn cuboid(cuboid: &Cuboid) -> Option<CuboidPolytope> {
     let half_extents = cuboid.half_extents.as_dvec3();
     let longest = DVec3::splat(half_extents.max_element());
     let thin = half_extents.cmple(longest * MIN_EXTENT);
@@ -56,20 +114,17 @@ pub(crate) fn cuboid(cuboid: &Cuboid) -> Option<CuboidPolytope> {
     (thin.bitmask().count_ones() < 2).then(|| CuboidPolytope::new(with_thickness))
 }
 
+fn cylinder(cylinder: &ParryCylinder) -> Option<Cylinder> {
+    let (half_height, radius) = (positive(cylinder.half_height)?, positive(cylinder.radius)?);
+    Some(Cylinder::new(half_height, radius))
+}
+
+fn cone(cone: &ParryCone) -> Option<Cone> {
+    let (half_height, radius) = (positive(cone.half_height)?, positive(cone.radius)?);
+    Some(Cone::new(half_height, radius))
+}
+
 /// A length to which tolerances can be relative.
-pub(crate) fn positive(length: Real) -> Option<f64> {
+fn positive(length: Real) -> Option<f64> {
     (length > 0.0 && length.is_finite()).then(|| length.into())
-}
-
-#[inline]
-pub(crate) fn segment(segment: &ParrySegment, border_radius: Real) -> Option<Segment> {
-    positive(segment.length() + border_radius)?;
-    let ends = [segment.a, segment.b].map(|p| p.as_dvec3());
-    Some(Segment::new(ends, border_radius.into()))
-}
-
-#[inline]
-pub(crate) fn triangle(triangle: &Triangle) -> Option<TrianglePolytope> {
-    let corners = [triangle.a, triangle.b, triangle.c].map(|p| p.as_dvec3());
-    TrianglePolytope::new(corners)
 }

@@ -1,12 +1,12 @@
 //! Pairs without a hull: cylinders and cones with other shapes, and two capsules.
 
-use parry3d::math::Real;
 use parry3d::query::Unsupported;
-use parry3d::shape::{Shape, ShapeType, TypedShape};
+use parry3d::shape::{Shape, ShapeType};
 
 use crate::curved::Body;
+use crate::map_pair::map_pair;
 use crate::parry::capsules::update_capsules;
-use crate::parry::convert::{self, CurvedShape};
+use crate::parry::convert::Core;
 use crate::parry::manifold::{CurvedPair, UpdateManifold};
 use crate::parry::order::PairOrder;
 use crate::parry::workspace::ThreadWorkspace;
@@ -22,84 +22,53 @@ pub(crate) fn is_curved(shape: &dyn Shape) -> bool {
 
 /// Brings a manifold up to date; pairs of other shapes are not supported.
 pub(crate) fn update_without_hull<M: Default, C: Default + Copy>(
-    [shape_1, shape_2]: [&dyn Shape; 2],
-    update: UpdateManifold<'_, M, C>,
+    shapes: [&dyn Shape; 2],
+    mut update: UpdateManifold<'_, M, C>,
 ) -> Result<(), Unsupported> {
-    let (order, curved, other) = match [is_curved(shape_1), is_curved(shape_2)] {
-        [_, true] => (PairOrder::Given, shape_2, shape_1),
-        [true, false] => (PairOrder::Reversed, shape_1, shape_2),
-        [false, false] => {
-            let shapes = [shape_1, shape_2];
-            return update_capsules(update.pos12, shapes, update.prediction, update.manifold);
-        }
+    // The curved shape comes second in the kernels.
+    let Some(order) = PairOrder::with_second(shapes.map(is_curved)) else {
+        return update_capsules(update.pos12, shapes, update.prediction, update.manifold);
     };
-    let mut pair = CurvedSecond { order, update };
-    match curved.as_typed_shape() {
-        TypedShape::Cylinder(cylinder) => pair.first(other, cylinder, 0.0),
-        TypedShape::RoundCylinder(round) => {
-            pair.first(other, &round.inner_shape, round.border_radius)
-        }
-        TypedShape::Cone(cone) => pair.first(other, cone, 0.0),
-        TypedShape::RoundCone(round) => pair.first(other, &round.inner_shape, round.border_radius),
+    let cores = map_pair(order.to_kernel(shapes), Core::of);
+    let [Some((first, border_1)), Some((second, border_2))] = &cores else {
+        return Err(Unsupported);
+    };
+    let mut pair = PairUpdate {
+        border_radii: [*border_1, *border_2].map(f64::from),
+        order,
+        update: &mut update,
+    };
+    match second {
+        Core::Cylinder(second) => pair.with(first, second),
+        Core::Cone(second) => pair.with(first, second),
         _ => Err(Unsupported),
     }
 }
 
-/// A pair whose curved shape comes second in the kernels.
-struct CurvedSecond<'a, M, C> {
+/// What is left to do once the types of both cores are known.
+struct PairUpdate<'u, 'a, M, C> {
+    border_radii: [f64; 2],
     order: PairOrder,
-    update: UpdateManifold<'a, M, C>,
+    update: &'u mut UpdateManifold<'a, M, C>,
 }
 
-impl<M: Default, C: Default + Copy> CurvedSecond<'_, M, C> {
-    fn first(
-        &mut self,
-        first: &dyn Shape,
-        second: &impl CurvedShape,
-        border_radius: Real,
-    ) -> Result<(), Unsupported> {
-        let second = second.kernel().ok_or(Unsupported)?;
-        let second = (&second, border_radius);
-        match first.as_typed_shape() {
-            TypedShape::Cuboid(cuboid) => self.both(convert::cuboid(cuboid), 0.0, second),
-            TypedShape::RoundCuboid(round) => self.both(
-                convert::cuboid(&round.inner_shape),
-                round.border_radius,
-                second,
-            ),
-            TypedShape::Triangle(triangle) => self.both(convert::triangle(triangle), 0.0, second),
-            TypedShape::RoundTriangle(round) => self.both(
-                convert::triangle(&round.inner_shape),
-                round.border_radius,
-                second,
-            ),
-            TypedShape::Capsule(capsule) => {
-                let core = convert::segment(&capsule.segment, capsule.radius);
-                self.both(core, capsule.radius, second)
-            }
-            TypedShape::Segment(segment) => self.both(convert::segment(segment, 0.0), 0.0, second),
-            TypedShape::Cylinder(cylinder) => self.both(cylinder.kernel(), 0.0, second),
-            TypedShape::RoundCylinder(round) => {
-                self.both(round.inner_shape.kernel(), round.border_radius, second)
-            }
-            TypedShape::Cone(cone) => self.both(cone.kernel(), 0.0, second),
-            TypedShape::RoundCone(round) => {
-                self.both(round.inner_shape.kernel(), round.border_radius, second)
-            }
-            _ => Err(Unsupported),
+impl<M: Default, C: Default + Copy> PairUpdate<'_, '_, M, C> {
+    /// Parry's routine for balls is exact.
+    fn with(&mut self, first: &Core, second: &impl Body) -> Result<(), Unsupported> {
+        match first {
+            Core::Ball(_) => Err(Unsupported),
+            Core::Segment(first) => self.with_both(first, second),
+            Core::Triangle(first) => self.with_both(first, second),
+            Core::Cuboid(first) => self.with_both(first, second),
+            Core::Cylinder(first) => self.with_both(first, second),
+            Core::Cone(first) => self.with_both(first, second),
         }
     }
 
-    fn both<A: Body, B: Body>(
-        &mut self,
-        first: Option<A>,
-        border_radius: Real,
-        (second, second_border): (&B, Real),
-    ) -> Result<(), Unsupported> {
-        let first = first.ok_or(Unsupported)?;
+    fn with_both(&mut self, first: &impl Body, second: &impl Body) -> Result<(), Unsupported> {
         let pair = CurvedPair {
-            shapes: (&first, second),
-            border_radii: [border_radius.into(), second_border.into()],
+            shapes: (first, second),
+            border_radii: self.border_radii,
             order: self.order,
         };
         ThreadWorkspace::with(|thread| {

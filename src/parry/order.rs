@@ -4,9 +4,10 @@ use crate::pose::{RelativePose, ValidPose};
 
 /// Which of the caller's shapes comes first here. The kernels expect the hull first, and the routines for
 /// composites the shape with parts.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum PairOrder {
     /// The caller's first shape.
+    #[default]
     Given,
     /// The caller's second shape.
     Reversed,
@@ -14,6 +15,21 @@ pub(crate) enum PairOrder {
 
 impl PairOrder {
     pub const BOTH: [Self; 2] = [Self::Given, Self::Reversed];
+
+    /// The order in which a shape of a kind comes first, by which of the caller's shapes are of that kind.
+    #[inline]
+    pub fn with_first(is_of_kind: [bool; 2]) -> Option<Self> {
+        match is_of_kind {
+            [true, _] => Some(Self::Given),
+            [false, true] => Some(Self::Reversed),
+            [false, false] => None,
+        }
+    }
+
+    /// Like [`with_first`](Self::with_first), with the shape second.
+    pub fn with_second([first, second]: [bool; 2]) -> Option<Self> {
+        Self::with_first([second, first])
+    }
 
     #[inline]
     pub fn is_reversed(self) -> bool {

@@ -7,13 +7,12 @@ use parry3d::shape::{Shape, ShapeType, TypedShape};
 use crate::curved::Body;
 use crate::hull::Hull;
 use crate::map_pair::map_pair;
-use crate::parry::convert::{self, CurvedShape, HalfSpace};
+use crate::parry::convert::{self, Core, HalfSpace};
 use crate::parry::hull_cache::epoch::Epoch;
 use crate::parry::operand::Operand;
 use crate::parry::order::PairOrder;
 use crate::parry::workspace::{ThreadWorkspace, Workspace};
 use crate::pose::{RelativePose, ValidPose};
-use crate::primitive::Ball;
 use crate::stats::Left;
 use crate::support::{Cso, Polytope, Support};
 use crate::tolerance::MIN_DIRECTED_DISTANCE;
@@ -87,12 +86,6 @@ pub(crate) trait PairVisitor: Sized {
     /// The result. [`Unsupported`] pairs are left to parry.
     type Answer;
 
-    /// Whether it answers half-spaces.
-    const HALF_SPACES: bool = false;
-
-    /// Whether it answers cylinders and cones.
-    const CURVED: bool = false;
-
     /// The other shape is a polytope.
     fn visit<B: Polytope>(
         &mut self,
@@ -140,12 +133,14 @@ pub(crate) fn visit_operands<V: PairVisitor>(
     epoch: Epoch,
     mut visitor: V,
 ) -> Result<V::Answer, Unsupported> {
-    let hull = |operand, order| HullOperand {
+    let are_hulls = [operand_1.is_hull(), operand_2.is_hull()];
+    let order = PairOrder::with_first(are_hulls).ok_or(Unsupported)?;
+    let hull = |operand| HullOperand {
         operand,
         epoch,
         order,
     };
-    match [operand_1.is_hull(), operand_2.is_hull()] {
+    match are_hulls {
         [true, true] => ThreadWorkspace::with(
             |ThreadWorkspace {
                  hulls, workspace, ..
@@ -157,14 +152,13 @@ pub(crate) fn visit_operands<V: PairVisitor>(
                     hull: first.hull(hulls).ok_or(Unsupported)?,
                     other: second.hull(hulls).ok_or(Unsupported)?,
                     border_radii: [first.border_radius, second.border_radius],
-                    order: PairOrder::Given,
+                    order,
                 };
                 visitor.visit(&pair, workspace)
             },
         ),
-        [true, false] => hull(operand_1, PairOrder::Given).visit(operand_2.shape, &mut visitor),
-        [false, true] => hull(operand_2, PairOrder::Reversed).visit(operand_1.shape, &mut visitor),
-        [false, false] => Err(Unsupported),
+        [true, false] => hull(operand_1).visit(operand_2.shape, &mut visitor),
+        [false, _] => hull(operand_2).visit(operand_1.shape, &mut visitor),
     }
 }
 
@@ -205,55 +199,28 @@ impl HullOperand<'_> {
         other: &dyn Shape,
         visitor: &mut V,
     ) -> Result<V::Answer, Unsupported> {
-        // The typed shape of such a shape may only be similar.
+        // The typed shape of a user's own shape may only be similar.
         if other.shape_type() == ShapeType::Custom {
             return Err(Unsupported);
         }
-        match other.as_typed_shape() {
-            TypedShape::Cuboid(cuboid) => {
-                let cuboid = convert::cuboid(cuboid);
-                self.polytope(cuboid.as_ref().ok_or(Unsupported)?, 0.0, visitor)
-            }
-            TypedShape::RoundCuboid(round) => {
-                let cuboid = convert::cuboid(&round.inner_shape).ok_or(Unsupported)?;
-                self.polytope(&cuboid, round.border_radius, visitor)
-            }
-            TypedShape::Triangle(triangle) => {
-                let triangle = convert::triangle(triangle);
-                self.polytope(triangle.as_ref().ok_or(Unsupported)?, 0.0, visitor)
-            }
-            TypedShape::RoundTriangle(round) => {
-                let triangle = convert::triangle(&round.inner_shape).ok_or(Unsupported)?;
-                self.polytope(&triangle, round.border_radius, visitor)
-            }
-            TypedShape::Ball(ball) => {
-                let radius = ball.radius;
-                let ball = Ball::new(convert::positive(radius).ok_or(Unsupported)?);
-                self.polytope(&ball, radius, visitor)
-            }
-            TypedShape::Capsule(capsule) => {
-                let core = convert::segment(&capsule.segment, capsule.radius).ok_or(Unsupported)?;
-                self.polytope(&core, capsule.radius, visitor)
-            }
-            TypedShape::Segment(segment) => {
-                let segment = convert::segment(segment, 0.0).ok_or(Unsupported)?;
-                self.polytope(&segment, 0.0, visitor)
-            }
-            TypedShape::HalfSpace(half_space) if V::HALF_SPACES => {
-                let half_space = convert::half_space(half_space).ok_or(Unsupported)?;
-                self.with(&half_space, 0.0, |pair, workspace| {
-                    visitor.visit_half_space(pair, workspace)
-                })
-            }
-            TypedShape::Cylinder(cylinder) if V::CURVED => self.curved(cylinder, 0.0, visitor),
-            TypedShape::RoundCylinder(round) if V::CURVED => {
-                self.curved(&round.inner_shape, round.border_radius, visitor)
-            }
-            TypedShape::Cone(cone) if V::CURVED => self.curved(cone, 0.0, visitor),
-            TypedShape::RoundCone(round) if V::CURVED => {
-                self.curved(&round.inner_shape, round.border_radius, visitor)
-            }
-            _ => Err(Unsupported),
+        let typed = other.as_typed_shape();
+        if let TypedShape::HalfSpace(half_space) = typed {
+            let half_space = convert::half_space(half_space).ok_or(Unsupported)?;
+            return self.with(&half_space, 0.0, |pair, workspace| {
+                visitor.visit_half_space(pair, workspace)
+            });
+        }
+        let found = Core::of_typed(typed);
+        let Some((core, border_radius)) = &found else {
+            return Err(Unsupported);
+        };
+        match core {
+            Core::Ball(core) => self.polytope(core, *border_radius, visitor),
+            Core::Segment(core) => self.polytope(core, *border_radius, visitor),
+            Core::Triangle(core) => self.polytope(core, *border_radius, visitor),
+            Core::Cuboid(core) => self.polytope(core, *border_radius, visitor),
+            Core::Cylinder(core) => self.curved(core, *border_radius, visitor),
+            Core::Cone(core) => self.curved(core, *border_radius, visitor),
         }
     }
 
@@ -272,12 +239,11 @@ impl HullOperand<'_> {
     #[inline]
     fn curved<V: PairVisitor>(
         &self,
-        other: &impl CurvedShape,
+        other: &impl Body,
         border_radius: Real,
         visitor: &mut V,
     ) -> Result<V::Answer, Unsupported> {
-        let kernel = other.kernel().ok_or(Unsupported)?;
-        self.with(&kernel, border_radius, |pair, workspace| {
+        self.with(other, border_radius, |pair, workspace| {
             visitor.visit_curved(pair, workspace)
         })
     }

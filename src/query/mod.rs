@@ -47,8 +47,9 @@ pub use feature::Feature;
 pub(crate) use feature::vertices;
 pub(crate) use last_contacts::{LastContacts, first_least};
 pub use patch::{ContactPatch, PatchVertex};
-pub(crate) use pipeline::{Distance, Full, Sink};
+pub(crate) use pipeline::{Distance, Full, Sink, Start};
 pub use types::{Answer, PairMemory, Proximity};
+pub(crate) use witness::moved_apart;
 
 pub use crate::epa::EpaScratch;
 pub use crate::gjk::SeparatingAxis;

@@ -21,14 +21,14 @@ pub(crate) enum Start {
 }
 
 impl Start {
-    pub(super) fn gjk(self) -> Stage {
+    pub fn gjk(self) -> Stage {
         match self {
             Self::Warm => Stage::WarmGjk,
             Self::Cold => Stage::ColdGjk,
         }
     }
 
-    pub(super) fn epa(self) -> Stage {
+    pub fn epa(self) -> Stage {
         match self {
             Self::Warm => Stage::WarmEpa,
             Self::Cold => Stage::ColdEpa,
@@ -222,10 +222,7 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
     /// Whether an axis separates. The `ids` are only remembered, and may be of other shapes.
     #[inline(always)]
     fn test_axis(&mut self, axis: DVec3, ids: [VertexId; 2]) -> AxisTest {
-        let start = [
-            self.cso.shape_1.clamp_vertex(ids[0]),
-            self.cso.shape_2.clamp_vertex(ids[1]),
-        ];
+        let start = self.cso.clamp_vertices(ids);
         gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost)
     }
 }

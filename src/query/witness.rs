@@ -9,11 +9,11 @@ use glam::DVec3;
 use super::feature;
 use super::types::Proximity;
 use crate::epa::Penetration;
-use crate::gjk::{self, Outcome};
+use crate::gjk::{self, Closest, Outcome};
 use crate::simplex::Preferred;
 use crate::stats::Cost;
-use crate::support::{Cso, Polytope};
-use crate::tolerance::{DEPTH_GAP, WITNESS_GAP};
+use crate::support::{Cso, CsoVertex, Polytope, Support};
+use crate::tolerance::{DEPTH_GAP, GJK_GAP_OF_SIZE, WITNESS_GAP};
 
 /// The answer for a depth. Each witness point lies on its own shape.
 pub(super) fn of_depth<A: Polytope, B: Polytope>(
@@ -38,20 +38,48 @@ pub(super) fn of_depth<A: Polytope, B: Polytope>(
     if beside.length() <= DEPTH_GAP * radius {
         return at_hand();
     }
-    let way = through + depth.normal * (WITNESS_GAP * radius);
+    let closest = moved_apart(
+        cso,
+        through,
+        depth.normal,
+        |apart, _| depth.face.map(|vertex| apart.vertex(vertex.ids)),
+        GJK_GAP_OF_SIZE,
+        cost,
+    );
+    match closest {
+        Some(closest) => {
+            let simplex = closest.simplex.vertices();
+            let features = feature::of_simplex(cso, simplex, depth.normal);
+            proximity([closest.on_1, closest.on_2], features)
+        }
+        None => at_hand(),
+    }
+}
+
+/// The points that are nearest once the shapes are moved apart: by `through`, which takes them out of each
+/// other along the `normal`, and a little farther. GJK starts from the vertices that `start` finds, and stops
+/// at a `gap` between its bounds. `on_2` is where the point is before it is moved.
+pub(crate) fn moved_apart<A: Support, B: Support, const N: usize>(
+    cso: &Cso<'_, A, B>,
+    through: DVec3,
+    normal: DVec3,
+    start: impl FnOnce(&Cso<'_, A, B>, &mut Cost) -> [CsoVertex; N],
+    gap: f64,
+    cost: &mut Cost,
+) -> Option<Closest> {
+    let way = through + normal * (WITNESS_GAP * cso.min_radius());
     let pose = cso.pose.moved(way);
     let apart = Cso {
         pose: &pose,
         ..*cso
     };
-    let start = depth.face.map(|vertex| apart.vertex(vertex.ids));
-    match gjk::distance::<Preferred, _, _>(&apart, &start, f64::INFINITY, cost) {
+    let start = start(&apart, cost);
+    match gjk::distance_within::<Preferred, _, _>(&apart, &start, f64::INFINITY, gap, cost) {
         // The points are on their shapes, whatever the bounds are.
-        Outcome::Disjoint(closest) | Outcome::Unsure(closest) => {
-            let simplex = closest.simplex.vertices();
-            let features = feature::of_simplex(cso, simplex, depth.normal);
-            proximity([closest.on_1, closest.on_2 - way], features)
-        }
-        _ => at_hand(),
+        Outcome::Disjoint(closest) | Outcome::Unsure(closest) => Some(Closest {
+            on_2: closest.on_2 - way,
+            ..closest
+        }),
+        _ => None,
     }
 }

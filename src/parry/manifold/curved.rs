@@ -14,7 +14,7 @@ use crate::parry::pair::valid_pose;
 use crate::query::{Feature, LastContacts, PairMemory, Proximity};
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, FaceId, VertexId};
-use crate::tolerance::{MIN_DIRECTED_DISTANCE, UNCORRECTED};
+use crate::tolerance::{DEPTH_GAP, MIN_DIRECTED_DISTANCE, UNCORRECTED};
 use crate::tuning::ABSURD_DEPTH;
 
 /// Two shapes in the kernels' order.
@@ -25,7 +25,7 @@ pub(crate) struct CurvedPair<'a, A, B> {
 }
 
 impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
-    /// Brings the manifold of two shapes up to date of which one is curved.
+    /// Brings the manifold of two shapes up to date, at least one of which is curved.
     pub(crate) fn update_curved<A: Body, B: Body>(
         &mut self,
         pair: &CurvedPair<'_, A, B>,
@@ -87,7 +87,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
     }
 }
 
-/// What a manifold remembers of its pair. Cores that are surrounded by `borders` may be apart although the
+/// What a manifold remembers of its pair. With `borders` around them, the cores may be apart although the
 /// shapes overlap.
 fn hint<M, C>(manifold: &KernelManifold<'_, M, C>, borders: f64) -> Hint {
     match manifold.memory(None) {
@@ -126,7 +126,7 @@ impl<A: Body, B: Body> Near<'_, '_, A, B> {
         }
     }
 
-    /// Leaves the contacts where they are, if that is right, or chooses them anew. Returns which.
+    /// Leaves the contacts where they are, if that is right, or chooses new ones. Returns whether they stayed.
     fn update<M, C: Default + Copy>(
         &self,
         manifold: &mut KernelManifold<'_, M, C>,
@@ -151,7 +151,7 @@ impl<A: Body, B: Body> Near<'_, '_, A, B> {
         curved::contacts(patch, self.cso.pose, deepest, self.max_distance, scale)
     }
 
-    /// The same along normals that the constraints correct.
+    /// Like [`update`](Self::update), along normals that the constraints correct.
     fn update_constrained<M, C: Default + Copy>(
         &self,
         manifold: &mut KernelManifold<'_, M, C>,
@@ -177,31 +177,27 @@ impl<A: Body, B: Body> Near<'_, '_, A, B> {
             manifold.set_contacts(corrected, &contacts);
         } else if self.least < 0.0 {
             // What overlaps must be pushed out, if not along the corrected normal.
-            let extreme =
-                self.cso
-                    .support(self.normal, self.starts(self.normal), &mut Cost::default());
-            patch.find(self.cso, self.normal, &extreme, self.border_radii);
+            self.find_patch(self.normal, patch);
             manifold.set_contacts(normals.rounded, &self.contacts(patch));
         } else {
             manifold.set_axis(self.normal, [VertexId::default(); 2]);
         }
     }
 
-    fn starts(&self, normal: DVec3) -> [VertexId; 2] {
-        self.cso.start_vertices(normal)
+    fn find_patch(&self, normal: DVec3, patch: &mut Patch) {
+        let start = self.cso.start_vertices(normal);
+        let extreme = self.cso.support(normal, start, &mut Cost::default());
+        patch.find(self.cso, normal, &extreme, self.border_radii);
     }
 
-    /// The contacts along a corrected normal. The query's depth says nothing about them.
+    /// The contacts along a corrected normal. The depth that the query found is along another one.
     fn along(&self, corrected: [Vec3; 2], patch: &mut Patch) -> Option<Contacts> {
         let normal = corrected[0].as_dvec3().normalize();
-        let extreme = self
-            .cso
-            .support(normal, self.starts(normal), &mut Cost::default());
-        patch.find(self.cso, normal, &extreme, self.border_radii);
-        let least = ABSURD_DEPTH * self.least.min(0.0) - 1e-6 * self.cso.min_radius();
+        self.find_patch(normal, patch);
+        let scale = self.cso.min_radius();
+        let least = ABSURD_DEPTH * self.least.min(0.0) - DEPTH_GAP * scale;
         patch.retain(least..=self.max_distance);
         let deepest = patch.deepest_point()?;
-        let scale = self.cso.min_radius();
         Some(curved::contacts(
             patch,
             self.cso.pose,

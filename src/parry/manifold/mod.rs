@@ -1,4 +1,4 @@
-//! The contact manifold of two convex shapes, coherently.
+//! The contact manifold of two convex shapes, from frame to frame.
 
 mod curved;
 mod flush;
@@ -38,12 +38,8 @@ pub(crate) struct UpdateManifold<'a, M, C> {
 }
 
 impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
-    /// There is one unless the pair is not finite.
+    /// The manifold is up to date, unless the pair is not finite.
     type Answer = ();
-
-    const HALF_SPACES: bool = true;
-
-    const CURVED: bool = true;
 
     // perf: in a call the pair would go through memory, which small queries notice.
     #[inline(always)]
@@ -122,7 +118,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
     }
 }
 
-/// Where the manifold is: mostly where it was in the frame before.
+/// The address of the manifold. Mostly, it is the same in the next frame.
 #[inline]
 fn key_of<T>(manifold: &T) -> u64 {
     (&raw const *manifold).addr() as u64

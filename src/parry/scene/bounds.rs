@@ -72,10 +72,6 @@ struct BoundsQuery<'a> {
 impl PairVisitor for BoundsQuery<'_> {
     type Answer = SeparationBounds;
 
-    const HALF_SPACES: bool = true;
-
-    const CURVED: bool = true;
-
     fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,

@@ -50,8 +50,6 @@ struct Cast<'a> {
 impl PairVisitor for Cast<'_> {
     type Answer = Option<ShapeCastHit>;
 
-    const CURVED: bool = true;
-
     fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,

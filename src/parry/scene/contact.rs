@@ -6,20 +6,18 @@ use parry3d::shape::Shape;
 
 use crate::curved::{Body, CurvedAnswer, CurvedQuery, Hint};
 use crate::epa;
-use crate::gjk::{self, Outcome};
-use crate::parry::convert::HalfSpace;
+use crate::parry::convert::{Core, HalfSpace};
 use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
 use crate::parry::scene::caller::{KernelFrame, NearestPoints};
 use crate::parry::scene::capsules;
-use crate::parry::scene::convex::{self, Core};
+use crate::parry::scene::convex;
 use crate::parry::scene::separation::{CoreSeparation, SeparationQuery, over_half_space};
 use crate::parry::workspace::Workspace;
 use crate::pose::ValidPose;
-use crate::query::{Full, Query};
-use crate::simplex::Preferred;
+use crate::query::{Full, Query, moved_apart};
 use crate::stats::Cost;
 use crate::support::{Polytope, Support};
-use crate::tolerance::{GJK_CURVED_GAP, WITNESS_GAP};
+use crate::tolerance::{GJK_CURVED_GAP, GJK_GAP_OF_SIZE};
 
 /// The deepest contact of shapes that overlap or are at most `prediction` apart.
 pub(crate) fn contact(
@@ -106,8 +104,7 @@ impl ContactQuery<'_> {
         Some(near.contact())
     }
 
-    /// The contact of shapes whose cores touch or overlap, by EPA. Its witness points are nearest where the
-    /// shapes are moved apart.
+    /// The contact of shapes whose cores touch or overlap, by EPA.
     fn depth<A: Support, B: Support>(
         &self,
         pair: &Pair<'_, B, A>,
@@ -117,27 +114,24 @@ impl ContactQuery<'_> {
         let cso = pair.cso(&pose);
         let cost = &mut Cost::default();
         let found = epa::penetration(&cso, &[], &mut workspace.epa, cost)?;
-        let way = found.normal * (found.depth + WITNESS_GAP * cso.min_radius());
-        let apart = pose.moved(way);
-        let apart = pair.cso(&apart);
-        let start = apart.support(found.normal, apart.start_vertices(found.normal), cost);
-        let points = match gjk::distance::<Preferred, _, _>(&apart, &[start], f64::INFINITY, cost) {
-            Outcome::Disjoint(closest) | Outcome::Unsure(closest) => {
-                [closest.on_1, closest.on_2 - way]
-            }
-            _ => [found.on_1, found.on_2],
-        };
-        let near = KernelFrame::new(pair, &pose).near(found.normal, points, -found.depth);
+        let normal = found.normal;
+        let start = cso.start_vertices(normal);
+        let closest = moved_apart(
+            &cso,
+            normal * found.depth,
+            normal,
+            |apart, cost| [apart.support(normal, start, cost)],
+            GJK_GAP_OF_SIZE,
+            cost,
+        );
+        let points = closest.map_or([found.on_1, found.on_2], |near| [near.on_1, near.on_2]);
+        let near = KernelFrame::new(pair, &pose).near(normal, points, -found.depth);
         Some(near.contact())
     }
 }
 
 impl PairVisitor for ContactQuery<'_> {
     type Answer = Option<Contact>;
-
-    const HALF_SPACES: bool = true;
-
-    const CURVED: bool = true;
 
     fn visit<B: Polytope>(
         &mut self,

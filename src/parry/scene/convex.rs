@@ -2,87 +2,18 @@
 
 use glam::DVec3;
 use parry3d::query::Unsupported;
-use parry3d::shape::{Shape, ShapeType, TypedShape};
+use parry3d::shape::{Shape, ShapeType};
 
 use crate::curved::{Body, Piece, Rim, Ruling};
 use crate::map_pair::map_pair;
-use crate::parry::convert;
+use crate::parry::convert::Core;
 use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
 use crate::parry::workspace::{ThreadWorkspace, Workspace};
-use crate::primitive::{Ball, Cone, CuboidPolytope, Cylinder, Segment, TrianglePolytope};
 use crate::stats::Cost;
 use crate::support::{Support, VertexId};
 
-/// A convex shape without its border.
-pub(super) enum Core {
-    Ball(Ball),
-    Segment(Segment),
-    Triangle(TrianglePolytope),
-    Cuboid(CuboidPolytope),
-    Cylinder(Cylinder),
-    Cone(Cone),
-}
-
-impl Core {
-    /// With the radius of the border.
-    fn of(shape: &dyn Shape) -> Option<(Self, f64)> {
-        // What such a shape shows as its typed shape may be a likeness only.
-        if shape.shape_type() == ShapeType::Custom {
-            return None;
-        }
-        let cylinder = |half_height, radius| {
-            let size = [half_height, radius].map(convert::positive);
-            Some(Self::Cylinder(Cylinder::new(size[0]?, size[1]?)))
-        };
-        let cone = |half_height, radius| {
-            let size = [half_height, radius].map(convert::positive);
-            Some(Self::Cone(Cone::new(size[0]?, size[1]?)))
-        };
-        let (core, border_radius) = match shape.as_typed_shape() {
-            TypedShape::Ball(ball) => {
-                let core = Ball::new(convert::positive(ball.radius)?);
-                (Self::Ball(core), ball.radius)
-            }
-            TypedShape::Capsule(capsule) => {
-                let core = convert::segment(&capsule.segment, capsule.radius)?;
-                (Self::Segment(core), capsule.radius)
-            }
-            TypedShape::Segment(segment) => (Self::Segment(convert::segment(segment, 0.0)?), 0.0),
-            TypedShape::Triangle(triangle) => (Self::Triangle(convert::triangle(triangle)?), 0.0),
-            TypedShape::RoundTriangle(round) => {
-                let core = convert::triangle(&round.inner_shape)?;
-                (Self::Triangle(core), round.border_radius)
-            }
-            TypedShape::Cuboid(cuboid) => (Self::Cuboid(convert::cuboid(cuboid)?), 0.0),
-            TypedShape::RoundCuboid(round) => {
-                let core = convert::cuboid(&round.inner_shape)?;
-                (Self::Cuboid(core), round.border_radius)
-            }
-            TypedShape::Cylinder(shape) => (cylinder(shape.half_height, shape.radius)?, 0.0),
-            TypedShape::RoundCylinder(round) => {
-                let inner = &round.inner_shape;
-                (
-                    cylinder(inner.half_height, inner.radius)?,
-                    round.border_radius,
-                )
-            }
-            TypedShape::Cone(shape) => (cone(shape.half_height, shape.radius)?, 0.0),
-            TypedShape::RoundCone(round) => {
-                let inner = &round.inner_shape;
-                (cone(inner.half_height, inner.radius)?, round.border_radius)
-            }
-            _ => return None,
-        };
-        Some((core, border_radius.into()))
-    }
-
-    pub fn is_curved(&self) -> bool {
-        matches!(self, Self::Cylinder(_) | Self::Cone(_))
-    }
-}
-
-/// Evaluates an expression about the shape that a core is.
+/// Evaluates an expression about the shape in a core.
 macro_rules! of_shape {
     ($core:expr, $shape:ident => $answer:expr) => {
         match $core {
@@ -163,14 +94,15 @@ pub(super) fn visit<T>(
     shapes: [&dyn Shape; 2],
     answer: impl FnOnce(&Pair<'_, Core, Core>, &mut Workspace) -> Result<T, Unsupported>,
 ) -> Result<T, Unsupported> {
-    let [Some((first, border_1)), Some((second, border_2))] = map_pair(shapes, Core::of) else {
+    let cores = map_pair(shapes, Core::of);
+    let [Some((first, border_1)), Some((second, border_2))] = &cores else {
         return Err(Unsupported);
     };
     let pair = Pair {
-        hull: &first,
-        other: &second,
-        border_radii: [border_1, border_2],
-        order: PairOrder::Given,
+        hull: first,
+        other: second,
+        border_radii: [*border_1, *border_2].map(f64::from),
+        order: PairOrder::default(),
     };
     ThreadWorkspace::with(|thread| answer(&pair, &mut thread.workspace))
 }

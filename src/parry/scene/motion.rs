@@ -191,31 +191,42 @@ impl<'a, A: Support, B: Support> Course<'a, A, B> {
             return None;
         }
         // So far the speed alone proves it.
-        let mut low = (gap / approach).min(remaining);
-        let mut low_value = certified(low);
-        let (mut high, mut high_value) = (low, low_value);
-        while high_value >= 0.0 {
-            if high >= remaining {
-                return (high_value <= rest).then_some(remaining);
-            }
-            (low, low_value) = (high, high_value);
-            high = (2.0 * high).min(remaining);
-            high_value = certified(high);
-        }
-        for _ in 0..REFINEMENTS {
-            if low_value <= USED_UP * gap {
-                break;
-            }
-            // The chord of a concave function lies beneath it.
-            let next = low + (high - low) * low_value / (low_value - high_value);
-            let value = certified(next);
-            if value < 0.0 {
-                break;
-            }
-            (low, low_value) = (next, value);
-        }
-        Some(low)
+        let proved = (gap / approach).min(remaining);
+        last_positive(certified, proved, remaining, [USED_UP * gap, rest])
     }
+}
+
+/// A time before the zero of a concave function that is not negative at `low`. The search ends where less
+/// than `used_up` is left. `None` if more than `rest` is left after the time `remaining`.
+fn last_positive(
+    function: impl Fn(f64) -> f64,
+    mut low: f64,
+    remaining: f64,
+    [used_up, rest]: [f64; 2],
+) -> Option<f64> {
+    let mut low_value = function(low);
+    let (mut high, mut high_value) = (low, low_value);
+    while high_value >= 0.0 {
+        if high >= remaining {
+            return (high_value <= rest).then_some(remaining);
+        }
+        (low, low_value) = (high, high_value);
+        high = (2.0 * high).min(remaining);
+        high_value = function(high);
+    }
+    for _ in 0..REFINEMENTS {
+        if low_value <= used_up {
+            break;
+        }
+        // The chord of a concave function lies beneath it.
+        let next = low + (high - low) * low_value / (low_value - high_value);
+        let value = function(next);
+        if value < 0.0 {
+            break;
+        }
+        (low, low_value) = (next, value);
+    }
+    Some(low)
 }
 
 /// The largest `dir · p` over a shape.

@@ -54,8 +54,6 @@ struct NonlinearCast {
 impl PairVisitor for NonlinearCast {
     type Answer = Option<ShapeCastHit>;
 
-    const CURVED: bool = true;
-
     fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,
@@ -85,24 +83,34 @@ impl NonlinearCast {
             return Ok(None);
         };
         let course = Course::new(pair, pair.order.to_kernel([first, second]));
-        let Some([start, enter, end]) = self.span(&course) else {
-            return Ok(None);
-        };
-        let mut time = enter;
+        match self.span(&course) {
+            Some(span) => self.advance(pair, &course, span, gap, workspace),
+            None => Ok(None),
+        }
+    }
+
+    /// Goes on from the time `enter` while the shapes are apart.
+    fn advance<A: Support, B: Support>(
+        &self,
+        pair: &Pair<'_, B, A>,
+        course: &Course<'_, A, B>,
+        [start, enter, end]: [f64; 3],
+        gap: f64,
+        workspace: &mut Workspace,
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
         let [radius_1, radius_2] = pair.radii();
         let smaller = radius_1.min(radius_2);
-        let touching = IMPACT_GAP * smaller;
-        let fine_gap = gap * smaller;
+        let [touching, fine_gap] = [IMPACT_GAP, gap].map(|share| share * smaller);
         let mut search = Search {
             axis: None,
             gap: fine_gap,
         };
-        for advance in 0.. {
+        let mut time = enter;
+        for advance in 0..=MAX_ADVANCES {
             let pose = course.pose_at(time);
             let near = search.run(pair, &pose, workspace).ok_or(Unsupported)?;
             let moment = course.moment(time, near.normal);
             let separation = course.separation(&moment);
-            let was_rough = search.gap > fine_gap;
             search.axis = Some(near.normal);
             if separation > touching {
                 search.gap = fine_gap.max(ROUGH_GAP * separation);
@@ -113,32 +121,32 @@ impl NonlinearCast {
                     time += ahead;
                     continue;
                 }
-            } else if was_rough {
+            } else if search.gap > fine_gap {
                 search.gap = fine_gap;
                 continue;
             }
-            if time - start < AT_START && !self.stop_at_penetration {
-                break;
-            }
             let frame = KernelFrame::new(pair, &pose);
-            let status = status(separation, touching);
-            return Ok(Some(self.impact(&near, &frame, time, status)));
+            return self.impact(&near, &frame, [start, time], status(separation, touching));
         }
         Err(Unsupported)
     }
 
+    /// Not supported at the start, unless the cast is to stop there.
     fn impact(
         &self,
         near: &Proximity,
         frame: &KernelFrame<'_>,
-        time: f64,
+        [start, time]: [f64; 2],
         status: ShapeCastStatus,
-    ) -> ShapeCastHit {
+    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+        if time - start < AT_START && !self.stop_at_penetration {
+            return Err(Unsupported);
+        }
         let near = CallerProximity::of_proximity(near, frame);
-        ShapeCastHit {
+        Ok(Some(ShapeCastHit {
             time_of_impact: not_after(time).max(self.times[0]),
             ..hit(time, &near, status)
-        }
+        }))
     }
 
     /// The start, and from when to when the shapes are within reach. `None` if they never are, also where a time

@@ -76,8 +76,6 @@ struct PatchQuery<'a> {
 impl PairVisitor for PatchQuery<'_> {
     type Answer = Option<ContactPatch>;
 
-    const HALF_SPACES: bool = true;
-
     fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,

@@ -156,10 +156,6 @@ impl SeparationQuery<'_> {
 impl PairVisitor for SeparationQuery<'_> {
     type Answer = Separation;
 
-    const HALF_SPACES: bool = true;
-
-    const CURVED: bool = true;
-
     fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,
