@@ -3,12 +3,12 @@
 use parry3d::query::ContactManifold;
 use parry3d::shape::Shape;
 
-use super::PairView;
+use super::view::PairView;
 use crate::query::SeparationBounds;
 use crate::tolerance::SUSPECT;
 
 /// Why a manifold looks wrong. Distances are compared with [`SeparationBounds`], which are proved at the
-/// same poses without what was known of the pair.
+/// same poses without the memory of the pair.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Suspicion {
@@ -34,7 +34,7 @@ impl Suspicion {
         Self::TooShallow,
     ];
 
-    /// As recordings call it.
+    /// Its name in recordings.
     pub const fn name(self) -> &'static str {
         match self {
             Self::NotFinite => "not-finite",
@@ -46,7 +46,7 @@ impl Suspicion {
     }
 }
 
-/// What is wrong with what a pair's update left, if anything is known about it.
+/// What looks wrong about a manifold after its update; `None` also if the bounds are unknown.
 pub(super) fn judge(pair: &PairView<'_>) -> Option<Suspicion> {
     let manifold = pair.after;
     if !is_finite(manifold) {
@@ -85,7 +85,7 @@ fn is_finite(manifold: &ContactManifold<(), ()>) -> bool {
     are_finite && has_normals
 }
 
-/// Of the bounding sphere; zero for shapes without end.
+/// The radius of the bounding sphere; zero for unbounded shapes.
 fn diameter(shape: &dyn Shape) -> f64 {
     let radius = f64::from(shape.compute_local_bounding_sphere().radius);
     if shape.as_halfspace().is_some() || !radius.is_finite() {

@@ -7,13 +7,13 @@ use parry3d::math::{Real, Vector};
 
 use super::error::{RecordingError, RecordingErrorKind};
 
-/// Begins a comment, which ends with its line.
+/// Begins a comment, up to the end of the line.
 const COMMENT: char = '#';
 
-/// The lines that are left to read, without comments and empty ones.
+/// The lines still to be read, without comments and empty lines.
 pub(super) struct Lines<'a> {
     lines: std::iter::Enumerate<std::str::Lines<'a>>,
-    /// Of the line read last, from 1.
+    /// The number of the line that was read last, from 1.
     number: usize,
 }
 
@@ -54,7 +54,7 @@ impl<'a> Lines<'a> {
         self.next().ok_or_else(|| self.error(end))
     }
 
-    /// A line with `keyword` and a number, and as many lines with an item each.
+    /// A line with `keyword` and a count, and that many lines with an item each.
     pub fn list<T>(
         &mut self,
         keyword: &'static str,
@@ -72,7 +72,7 @@ impl<'a> Lines<'a> {
         items.collect()
     }
 
-    /// What follows `keyword` in the next line.
+    /// The words after `keyword` in the next line.
     pub fn after(&mut self, keyword: &'static str) -> Result<Words<'a>, RecordingError> {
         let mut words = self.following()?;
         words.keyword(keyword)?;
@@ -80,7 +80,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// The words that are left in a line.
+/// The words still to be read in a line.
 pub(super) struct Words<'a> {
     words: SplitWhitespace<'a>,
     line: usize,
@@ -102,7 +102,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Whether the next word is this one, which is taken then.
+    /// Takes the next word if it is this one. Returns whether it is.
     pub fn take(&mut self, word: &str) -> bool {
         let mut rest = self.words.clone();
         let is_next = rest.next() == Some(word);
@@ -137,7 +137,7 @@ impl<'a> Words<'a> {
         self.numbers::<Real, 3>().map(Vector::from)
     }
 
-    /// Nothing may be left.
+    /// An error if words are left.
     pub fn end(mut self) -> Result<(), RecordingError> {
         match self.words.next() {
             None => Ok(()),
@@ -146,8 +146,8 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Appends a line of numbers after a keyword, which may be empty. They are as short as reads back to the
-/// same bits.
+/// Appends a line of numbers after a keyword, which may be empty. Numbers have the fewest digits that give the
+/// same bits when they are read.
 pub(super) fn push<T: Debug>(keyword: &str, numbers: &[T], text: &mut String) {
     text.push_str(keyword);
     for number in numbers {

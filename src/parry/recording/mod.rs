@@ -1,4 +1,4 @@
-//! Pairs of shapes in a file, with the contacts that they had: how a wrong contact reaches us.
+//! Pairs of shapes in a file, with their contacts, for reports of wrong contacts.
 //!
 //! Give the dispatcher a [`Recorder`], which writes down each pair whose contacts look wrong
 //! ([`Suspicion`]), or all pairs. [`read`] reads the file, and [`RecordedPair::update`] makes the same update
@@ -41,9 +41,9 @@
 //! | `pair` *suspicion* | what looks wrong: the [name](Suspicion::name) of a [`Suspicion`], or `nothing`; a second word `corrected` if normals are corrected for the inner edges of a mesh or compound |
 //! | `shape` *name* *numbers* | twice, see below |
 //! | `pose` *x y z*  *x y z w* | of shape 2 in the frame of shape 1: translation, and rotation as a quaternion |
-//! | `prediction` *distance* | up to which there are contacts |
+//! | `prediction` *distance* | shapes farther apart have no contacts |
 //! | `before` *n1 n2* | the normals in the manifold before the update, three numbers each |
-//! | `contacts` *count* | and as many lines with a contact of it: parry's packed feature ids on both shapes, the points on both in their own frames, the distance |
+//! | `contacts` *count* | and that many lines with a contact each: parry's packed feature ids on both shapes, the points on both in their own frames, the distance |
 //! | `after` *n1 n2*, `contacts` *count*, ... | the same after the update |
 //!
 //! | Shape | Numbers |
@@ -62,6 +62,8 @@ mod lines;
 mod manifold;
 mod recorder;
 mod shape;
+mod text;
+mod view;
 
 pub use error::{RecordingError, RecordingErrorKind};
 pub use judge::Suspicion;
@@ -71,31 +73,26 @@ use std::fmt;
 
 use parry3d::math::{Pose, Real, Rotation};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
-use parry3d::shape::{Shape, SharedShape};
+use parry3d::shape::SharedShape;
 
 use lines::Lines;
 pub(crate) use manifold::bare;
-
-/// How a recording begins, before the version.
-const HEAD: &str = "isa-gjk pairs";
-const VERSION: &str = "1";
-/// In the place of a suspicion.
-const NOTHING: &str = "nothing";
-const CORRECTED: &str = "corrected";
-const POSE: &str = "pose";
+use text::{CORRECTED, HEAD, NOTHING, POSE, VERSION, write};
+pub(crate) use view::PairView;
 
 /// Two convex shapes, and an update of their manifold.
 #[derive(Clone)]
 pub struct RecordedPair {
     /// What looked wrong when it was recorded.
     pub suspicion: Option<Suspicion>,
-    /// The shapes: of composite ones the parts.
+    /// The shapes; of composite shapes, the parts.
     pub shapes: [SharedShape; 2],
     /// The pose of the second shape in the frame of the first.
     pub pos12: Pose,
-    /// Up to which there are contacts.
+    /// Shapes farther apart have no contacts.
     pub prediction: Real,
-    /// Normals were corrected for the inner edges of a mesh or compound. How is not recorded.
+    /// Whether normals were corrected for the inner edges of a mesh or compound. The corrections are not
+    /// recorded.
     pub has_corrected_normals: bool,
     /// The manifold before the update, with what it remembered of the pair.
     pub before: ContactManifold<(), ()>,
@@ -104,8 +101,8 @@ pub struct RecordedPair {
 }
 
 impl RecordedPair {
-    /// Makes the update again: the manifold that `dispatcher` makes of [`before`](Self::before). With the
-    /// dispatcher that was recorded, it is [`after`](Self::after), unless normals were corrected.
+    /// Repeats the update: lets `dispatcher` update the manifold [`before`](Self::before). With the dispatcher
+    /// that was recorded, the result is [`after`](Self::after), unless normals were corrected.
     pub fn update(&self, dispatcher: &impl PersistentQueryDispatcher) -> ContactManifold<(), ()> {
         let [shape_1, shape_2] = self.shapes.each_ref().map(|shape| &**shape);
         let mut manifold = self.before.clone();
@@ -145,20 +142,10 @@ impl fmt::Debug for RecordedPair {
     }
 }
 
-/// A pair, wherever its shapes are.
-pub(crate) struct PairView<'a> {
-    pub shapes: [&'a dyn Shape; 2],
-    pub pos12: &'a Pose,
-    pub prediction: Real,
-    pub has_corrected_normals: bool,
-    pub before: &'a ContactManifold<(), ()>,
-    pub after: &'a ContactManifold<(), ()>,
-}
-
 /// Reads all pairs of a recording.
 ///
 /// # Errors
-/// Names the first line that is wrong, and what is wrong there.
+/// The first line that is wrong, and what is wrong there.
 pub fn read(text: &str) -> Result<Vec<RecordedPair>, RecordingError> {
     let mut lines = Lines::new(text);
     let unlike = lines.error(RecordingErrorKind::NotARecording);
@@ -203,30 +190,4 @@ fn read_pair(
         before: manifold::read("before", lines)?,
         after: manifold::read("after", lines)?,
     })
-}
-
-/// A pair as text; `None` if a recording cannot have its shapes.
-fn write(pair: &PairView<'_>, suspicion: Option<Suspicion>) -> Option<String> {
-    let name = suspicion.map_or(NOTHING, Suspicion::name);
-    let corrected = [" ", CORRECTED].concat();
-    let corrected = if pair.has_corrected_normals {
-        &*corrected
-    } else {
-        ""
-    };
-    let mut text = format!("\npair {name}{corrected}\n");
-    for shape in pair.shapes {
-        shape::write(shape, &mut text)?;
-    }
-    let Pose {
-        translation,
-        rotation,
-        ..
-    } = pair.pos12;
-    let pose = [&translation.to_array()[..], &rotation.to_array()].concat();
-    lines::push(POSE, &pose, &mut text);
-    lines::push("prediction", &[pair.prediction], &mut text);
-    manifold::write("before", pair.before, &mut text);
-    manifold::write("after", pair.after, &mut text);
-    Some(text)
 }

@@ -1,4 +1,4 @@
-//! Who writes pairs down while a world runs.
+//! Writes pairs down while a world runs.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -10,12 +10,13 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use super::judge::judge;
-use super::{HEAD, POSE, PairView, VERSION, write};
+use super::text::{HEAD, POSE, VERSION, write};
+use super::view::PairView;
 
-/// So many pairs of the same two shapes that look wrong for the same reason are written down: what looks wrong
+/// How many pairs of the same two shapes that look wrong for the same reason are written down: what looks wrong
 /// in one step mostly does so in the next.
 const ALIKE: u32 = 4;
-/// A recording ends with the pair that would make it longer than this.
+/// The default limit of a recording: it ends before the pair that would make it longer.
 const DEFAULT_LIMIT: usize = 1 << 20;
 /// Then it ends with this comment.
 const FULL: &str = "\n# The limit was reached. Later pairs are missing.\n";
@@ -24,10 +25,10 @@ const FULL: &str = "\n# The limit was reached. Later pairs are missing.\n";
 /// those whose contacts look wrong, unless it is told to write [all](Self::of_all_pairs). Of two shapes that
 /// look wrong for the same reason again and again, it writes the first few pairs.
 ///
-/// Judging a pair takes a query without memory, so steps take some times as long. A recording stops at
-/// 1 MiB, or at [another limit](Self::with_limit); it says so in its last line and in the log, and pairs
-/// cost no more than without a recorder. An error of the file ends it as well, and never the step:
-/// [`summary`](Self::summary) names it.
+/// Each pair that is checked needs a query without memory, so steps take several times as long. A recording
+/// ends at 1 MiB, or at [another limit](Self::with_limit). Its last line and the log say so, and from then on
+/// pairs cost no more than without a recorder. A file error also ends it, but never the step: see
+/// [`summary`](Self::summary).
 pub struct Recorder {
     wants_all: bool,
     limit: usize,
@@ -46,11 +47,11 @@ struct State {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct RecorderSummary {
-    /// Updates that it looked at.
+    /// Updates that it checked.
     pub seen: u64,
     /// Pairs in the file.
     pub recorded: u64,
-    /// Pairs that are missing in the file, because it cannot have their shapes: those of your own types.
+    /// Pairs that are missing in the file because a shape has a type of your own.
     pub unknown_shapes: u64,
     /// Pairs that look wrong and are missing in the file, because it has enough of their shapes and reason.
     pub repeated: u64,
@@ -58,7 +59,7 @@ pub struct RecorderSummary {
     pub bytes: usize,
     /// The file has reached its limit, and later pairs are missing.
     pub is_full: bool,
-    /// What went wrong with the file, which ended the recording.
+    /// The file error that ended the recording.
     pub error: Option<io::ErrorKind>,
 }
 
@@ -66,7 +67,7 @@ impl Recorder {
     /// Writes to a new file; one of this name is overwritten.
     ///
     /// # Errors
-    /// Those of the file system.
+    /// Errors of the file system.
     pub fn create(path: impl AsRef<Path>) -> io::Result<Self> {
         Self::new(File::create(path)?)
     }
@@ -74,7 +75,7 @@ impl Recorder {
     /// Writes to `out`, one pair at a time.
     ///
     /// # Errors
-    /// Those of `out`.
+    /// Errors of `out`.
     pub fn new(mut out: impl Write + Send + 'static) -> io::Result<Self> {
         let head = format!("{HEAD} {VERSION}\n");
         out.write_all(head.as_bytes())?;
@@ -104,7 +105,7 @@ impl Recorder {
         }
     }
 
-    /// Ends with the pair that would make the file longer than this.
+    /// Ends before the pair that would make the file longer than this.
     #[must_use]
     pub fn with_limit(self, bytes: usize) -> Self {
         Self {
@@ -118,7 +119,7 @@ impl Recorder {
         self.state().summary.clone()
     }
 
-    /// Whether it still looks at pairs.
+    /// Whether it still checks pairs.
     pub(crate) fn is_open(&self) -> bool {
         self.is_open.load(Ordering::Relaxed)
     }
@@ -127,7 +128,7 @@ impl Recorder {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Looks at a pair after its update.
+    /// Checks a pair after its update.
     pub(crate) fn look_at(&self, pair: &PairView<'_>) {
         let suspicion = judge(pair);
         let is_wanted = self.wants_all || suspicion.is_some();

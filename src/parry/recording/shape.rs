@@ -2,8 +2,8 @@
 
 use parry3d::math::{Real, Vector};
 use parry3d::shape::{
-    ConvexPolyhedron, Cuboid, HalfSpace, RoundConvexPolyhedron, RoundCuboid, Segment, Shape,
-    ShapeType, SharedShape, Triangle, TypedShape,
+    ConvexPolyhedron, Cuboid, HalfSpace, RoundConvexPolyhedron, RoundCuboid, RoundShape, Segment,
+    Shape, ShapeType, SharedShape, Triangle, TypedShape,
 };
 
 use super::error::{RecordingError, RecordingErrorKind};
@@ -13,7 +13,7 @@ use crate::parry::hull_shape::HullShape;
 
 /// What a shape is made of, in the order in which it is written.
 struct Description<'a> {
-    name: &'static str,
+    name: String,
     numbers: Vec<Real>,
     surface: Option<&'a ConvexPolyhedron>,
 }
@@ -23,62 +23,46 @@ impl<'a> Description<'a> {
         use TypedShape as Typed;
         let is_prepared = shape.as_shape::<HullShape>().is_some();
         if shape.shape_type() == ShapeType::Custom && !is_prepared {
-            // What it shows as its typed shape may be a likeness only.
+            // The typed shape of a user's own shape may only be similar.
             return None;
         }
         let mut surface = None;
         let (name, numbers) = match shape.as_typed_shape() {
             Typed::ConvexPolyhedron(hull) => {
                 surface = Some(hull);
-                let name = if is_prepared { "hull-shape" } else { "hull" };
-                (name, vec![])
-            }
-            Typed::RoundConvexPolyhedron(round) => {
-                surface = Some(&round.inner_shape);
-                ("round-hull", vec![round.border_radius])
+                (if is_prepared { "hull-shape" } else { "hull" }, vec![])
             }
             Typed::Ball(ball) => ("ball", vec![ball.radius]),
-            Typed::Cuboid(cuboid) => ("cuboid", cuboid.half_extents.to_array().to_vec()),
-            Typed::RoundCuboid(round) => {
-                let half_extents = round.inner_shape.half_extents.to_array();
-                (
-                    "round-cuboid",
-                    [&half_extents, &[round.border_radius][..]].concat(),
-                )
-            }
+            Typed::Cuboid(cuboid) => ("cuboid", flat(&[cuboid.half_extents])),
             Typed::Capsule(capsule) => {
                 let Segment { a, b } = capsule.segment;
                 ("capsule", [&flat(&[a, b])[..], &[capsule.radius]].concat())
             }
             Typed::Segment(Segment { a, b }) => ("segment", flat(&[*a, *b])),
             Typed::Triangle(Triangle { a, b, c }) => ("triangle", flat(&[*a, *b, *c])),
-            Typed::RoundTriangle(round) => {
-                let Triangle { a, b, c } = round.inner_shape;
-                let corners = flat(&[a, b, c]);
-                (
-                    "round-triangle",
-                    [&corners[..], &[round.border_radius]].concat(),
-                )
-            }
             Typed::HalfSpace(half_space) => ("half-space", flat(&[half_space.normal])),
             Typed::Cylinder(cylinder) => ("cylinder", vec![cylinder.half_height, cylinder.radius]),
-            Typed::RoundCylinder(round) => {
-                let cylinder = round.inner_shape;
-                let numbers = [cylinder.half_height, cylinder.radius, round.border_radius];
-                ("round-cylinder", numbers.to_vec())
-            }
             Typed::Cone(cone) => ("cone", vec![cone.half_height, cone.radius]),
-            Typed::RoundCone(round) => {
-                let cone = round.inner_shape;
-                let numbers = [cone.half_height, cone.radius, round.border_radius];
-                ("round-cone", numbers.to_vec())
-            }
+            Typed::RoundConvexPolyhedron(round) => return Self::rounded(round),
+            Typed::RoundCuboid(round) => return Self::rounded(round),
+            Typed::RoundTriangle(round) => return Self::rounded(round),
+            Typed::RoundCylinder(round) => return Self::rounded(round),
+            Typed::RoundCone(round) => return Self::rounded(round),
             _ => return None,
         };
         Some(Self {
-            name,
+            name: name.to_owned(),
             numbers,
             surface,
+        })
+    }
+
+    fn rounded(round: &'a RoundShape<impl Shape>) -> Option<Self> {
+        let inner = Self::of(&round.inner_shape)?;
+        Some(Self {
+            name: format!("round-{}", inner.name),
+            numbers: [&inner.numbers[..], &[round.border_radius]].concat(),
+            ..inner
         })
     }
 }
