@@ -1,4 +1,4 @@
-//! The plug: rapier's narrow phase asks [`IsaGjkDispatcher`] instead of parry's own dispatcher.
+//! [`IsaGjkDispatcher`], which rapier's narrow phase uses in place of parry's own dispatcher.
 
 use std::sync::Arc;
 
@@ -68,8 +68,8 @@ impl<F> IsaGjkDispatcher<F> {
         }
     }
 
-    /// The same with someone who looks at each pair, and writes down those whose contacts look wrong: see
-    /// [`recording`](crate::recording). Clones that are made of it share the recorder.
+    /// Adds a recorder, which checks each pair and writes down those whose contacts look wrong: see
+    /// [`recording`](crate::recording). Clones share the recorder.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -137,9 +137,9 @@ impl<F> IsaGjkDispatcher<F> {
     /// Drops what all dispatchers have prepared of plain hulls, and the memory that queries work in: in
     /// this thread now, in others before their next query.
     ///
-    /// Hulls that are gone also go by themselves, but not at once: a thread keeps 32 MiB of them. Call
-    /// it when a level is over. It changes no answer; a hull that is still there is prepared again
-    /// when it is asked about next.
+    /// Hulls that no longer exist are also dropped without it, but not at once: a thread keeps 32 MiB of them.
+    /// Call it when a level is over. It changes no answer; a hull that still exists is prepared again when it
+    /// is next needed.
     ///
     /// ```
     /// use isa_gjk::IsaGjkDispatcher;

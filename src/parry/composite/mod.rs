@@ -125,12 +125,11 @@ pub(crate) fn reset_to_single<M: Default + Clone, C: Default + Copy>(
     manifolds.push(ContactManifold::with_data(0, 0, M::default()));
 }
 
-/// A compound against another one or a convex shape, or a hull, a cylinder or a cone against a shape made of
-/// triangles.
-/// `false` for other pairs.
+/// Takes apart a compound that meets another one or a convex shape, and a shape made of triangles that meets a
+/// hull, a cylinder or a cone. `false` for other pairs.
 ///
-/// We answer compounds whether or not they have a hull: finding out would mean looking at every part in every
-/// update, however few of them are near.
+/// We answer compounds whether or not they have a hull: to find out, each update would have to visit every
+/// part, however few of them are near.
 fn by_us<M, C, F>(
     updater: Updater<'_, F>,
     pos12: &Pose,

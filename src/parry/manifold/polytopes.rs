@@ -65,7 +65,7 @@ impl<B: Polytope> UpdateContacts for PolytopeContacts<'_, '_, B> {
 }
 
 impl<B: Polytope> PolytopeContacts<'_, '_, B> {
-    /// The same along normals that the constraints correct.
+    /// Like [`update`](Self::update), along normals that the constraints correct.
     fn update_constrained<M, C: Default + Copy>(
         mut self,
         manifold: &mut KernelManifold<'_, M, C>,

@@ -1,4 +1,4 @@
-//! From the answer of a query to a manifold.
+//! Writes the answer of a query into a manifold.
 
 use parry3d::query::ContactManifold;
 
@@ -9,9 +9,9 @@ use crate::pose::RelativePose;
 use crate::query::{FlushFaces, LastContacts, PairMemory, Proximity, Sink};
 use crate::stats::Stage;
 
-/// How shapes that are near each other get their contacts.
+/// Finds the contacts of shapes that are near each other.
 pub(super) trait UpdateContacts {
-    /// Where the second shape is, if contacts may stay where they were.
+    /// The pose of the second shape, if contacts may stay where they were.
     fn pose(&self) -> Option<&RelativePose> {
         None
     }
@@ -26,8 +26,7 @@ pub(super) trait UpdateContacts {
         None
     }
 
-    /// Writes the contacts, and returns whether they stayed where they were. The `last`
-    /// ones may.
+    /// Writes the contacts, or leaves the `last` ones where they are. Returns whether it left them.
     fn update_contacts<M, C: Default + Copy>(
         &mut self,
         manifold: &mut KernelManifold<'_, M, C>,
@@ -36,14 +35,14 @@ pub(super) trait UpdateContacts {
     ) -> bool;
 }
 
-/// Brings a manifold up to date. Only references: most pairs are apart, and what is copied for
-/// contacts would cost them more than the rest.
+/// Brings a manifold up to date. It holds only references: most pairs are apart, and copies that only contacts
+/// need would cost them more than the rest.
 pub(super) struct ManifoldSink<'a, 'p, M, C, B, U> {
     pub manifold: &'a mut ContactManifold<M, C>,
     pub pair: &'a Pair<'p, B>,
     pub frame: AxisFrame<'a>,
     pub contacts: U,
-    /// Those that the manifold has, once they are asked for.
+    /// The contacts of the manifold. They are read when they are first needed.
     pub last: Option<LastContacts>,
     pub is_kept: bool,
 }
@@ -54,7 +53,7 @@ impl<M, C, B, U> ManifoldSink<'_, '_, M, C, B, U> {
         KernelManifold::new(self.manifold, self.pair, self.frame)
     }
 
-    /// What the query's stage counts as.
+    /// The stage to count: the query's, unless the contacts stayed where they were.
     #[inline(always)]
     pub fn stage(&self, stage: Stage) -> Stage {
         if self.is_kept && stage == Stage::Feature {
