@@ -176,20 +176,25 @@ where
         manifolds: &mut Vec<ContactManifold<M, C>>,
         workspace: &mut Option<ContactManifoldsWorkspace>,
     ) -> Result<(), Unsupported> {
-        let updater = self.updater(self.epochs.epoch());
-        let shapes = [g1, g2];
-        let operands = map_pair(shapes, Operand::new);
-        let may_be_composite = operands[0].may_be_composite() || operands[1].may_be_composite();
-        if may_be_composite
-            && composite::contact_manifolds(
+        let epoch = self.epochs.epoch();
+        let operands = map_pair([g1, g2], Operand::new);
+        if operands[0].may_be_composite() || operands[1].may_be_composite() {
+            let (updater, shapes) = (self.updater(epoch), [g1, g2]);
+            if composite::contact_manifolds(
                 self, updater, pos12, shapes, prediction, manifolds, workspace,
-            )
-        {
-            return Ok(());
+            ) {
+                return Ok(());
+            }
         }
         composite::reset_to_single(manifolds, workspace);
-        let constraints = [Constraints::None; 2];
-        updater.update(pos12, operands, constraints, prediction, &mut manifolds[0])
+        let (updater, constraints) = (self.updater(epoch), [Constraints::None; 2]);
+        updater.update(
+            pos12,
+            &operands,
+            &constraints,
+            prediction,
+            &mut manifolds[0],
+        )
     }
 
     fn contact_manifold_convex_convex(
@@ -206,6 +211,6 @@ where
         let constraints = [normal_constraints1, normal_constraints2].map(Constraints::given);
         // Whoever takes shapes apart may make parts that do not outlive their pair.
         let updater = self.updater(Epoch::of_pair());
-        updater.update(pos12, operands, constraints, prediction, manifold)
+        updater.update(pos12, &operands, &constraints, prediction, manifold)
     }
 }

@@ -10,9 +10,16 @@ use crate::parry::hull_shape::HullShape;
 
 /// A hull with a rounded border of this radius around it.
 #[derive(Clone, Copy)]
+pub(crate) struct PreparedOperand<'a> {
+    pub hull: &'a Hull,
+    pub border_radius: f64,
+}
+
+/// Where a prepared hull is.
+#[derive(Clone, Copy)]
 pub(crate) struct HullHandle<'a> {
     location: HullLocation<'a>,
-    pub border_radius: f64,
+    border_radius: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -25,11 +32,15 @@ enum HullLocation<'a> {
 
 impl<'a> HullHandle<'a> {
     #[inline]
-    pub fn hull(&self, cache: &'a HullCache) -> Option<&'a Hull> {
-        match self.location {
-            HullLocation::Own(hull) => Some(hull),
-            HullLocation::Found(location) => cache.get(location),
-        }
+    pub fn hull(&self, cache: &'a HullCache) -> Option<PreparedOperand<'a>> {
+        let hull = match self.location {
+            HullLocation::Own(hull) => hull,
+            HullLocation::Found(location) => cache.get(location)?,
+        };
+        Some(PreparedOperand {
+            hull,
+            border_radius: self.border_radius,
+        })
     }
 }
 
@@ -94,7 +105,25 @@ impl<'a> Operand<'a> {
             )
     }
 
-    /// The hull, if the shape is one.
+    /// The hull, if the shape is one and the cache finds it at once.
+    #[inline(always)]
+    pub fn known<'h>(&self, cache: &'h HullCache, epoch: Epoch) -> Option<PreparedOperand<'h>>
+    where
+        'a: 'h,
+    {
+        let (hull, border_radius) = match self.hull? {
+            HullSource::Plain(polyhedron, border_radius) => {
+                (cache.known(polyhedron, epoch)?, border_radius)
+            }
+            HullSource::Prepared(shape) => (shape.hull(), 0.0),
+        };
+        Some(PreparedOperand {
+            hull,
+            border_radius: border_radius.into(),
+        })
+    }
+
+    /// The hull, if the shape is one. It is prepared if it is new.
     #[inline(always)]
     pub fn prepare(&self, cache: &mut HullCache, epoch: Epoch) -> Option<HullHandle<'a>> {
         Some(match self.hull? {

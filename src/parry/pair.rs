@@ -122,14 +122,14 @@ pub(crate) fn visit<V: PairVisitor>(
     visitor: V,
 ) -> Result<V::Answer, Unsupported> {
     let operands = map_pair([shape_1, shape_2], Operand::new);
-    visit_operands(operands, Epoch::of_pair(), visitor)
+    visit_operands(&operands, Epoch::of_pair(), visitor)
 }
 
 /// Like [`visit`], for shapes that do not change during `epoch`.
 // perf: in a call the operands would go through memory, which pairs that are apart notice.
 #[inline(always)]
 pub(crate) fn visit_operands<V: PairVisitor>(
-    [operand_1, operand_2]: [Operand<'_>; 2],
+    [operand_1, operand_2]: &[Operand<'_>; 2],
     epoch: Epoch,
     mut visitor: V,
 ) -> Result<V::Answer, Unsupported> {
@@ -146,11 +146,24 @@ pub(crate) fn visit_operands<V: PairVisitor>(
                  hulls, workspace, ..
              }| {
                 hulls.begin();
-                let first = operand_1.prepare(hulls, epoch).ok_or(Unsupported)?;
-                let second = operand_2.prepare(hulls, epoch).ok_or(Unsupported)?;
+                let known = [
+                    operand_1.known(hulls, epoch),
+                    operand_2.known(hulls, epoch),
+                ];
+                let [first, second] = match known {
+                    [Some(first), Some(second)] => [first, second],
+                    _ => {
+                        let first = operand_1.prepare(hulls, epoch).ok_or(Unsupported)?;
+                        let second = operand_2.prepare(hulls, epoch).ok_or(Unsupported)?;
+                        [
+                            first.hull(hulls).ok_or(Unsupported)?,
+                            second.hull(hulls).ok_or(Unsupported)?,
+                        ]
+                    }
+                };
                 let pair = Pair {
-                    hull: first.hull(hulls).ok_or(Unsupported)?,
-                    other: second.hull(hulls).ok_or(Unsupported)?,
+                    hull: first.hull,
+                    other: second.hull,
                     border_radii: [first.border_radius, second.border_radius],
                     order,
                 };
@@ -186,7 +199,7 @@ pub(crate) fn why_left(pos12: &Pose, shapes: [&dyn Shape; 2]) -> Left {
 
 /// A hull and its position in the pair. It is looked up only once the other shape is known.
 struct HullOperand<'a> {
-    operand: Operand<'a>,
+    operand: &'a Operand<'a>,
     epoch: Epoch,
     order: PairOrder,
 }
@@ -262,8 +275,9 @@ impl HullOperand<'_> {
              }| {
                 hulls.begin();
                 let prepared = self.operand.prepare(hulls, self.epoch).ok_or(Unsupported)?;
+                let prepared = prepared.hull(hulls).ok_or(Unsupported)?;
                 let pair = Pair {
-                    hull: prepared.hull(hulls).ok_or(Unsupported)?,
+                    hull: prepared.hull,
                     other,
                     border_radii: [prepared.border_radius, border_radius.into()],
                     order: self.order,

@@ -38,8 +38,8 @@ impl<F> Updater<'_, F> {
     pub fn update<M, C>(
         self,
         pos12: &Pose,
-        operands: [Operand<'_>; 2],
-        constraints: [Constraints<'_>; 2],
+        operands: &[Operand<'_>; 2],
+        constraints: &[Constraints<'_>; 2],
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported>
@@ -62,8 +62,8 @@ impl<F> Updater<'_, F> {
         self,
         recorder: &Recorder,
         pos12: &Pose,
-        operands: [Operand<'_>; 2],
-        constraints: [Constraints<'_>; 2],
+        operands: &[Operand<'_>; 2],
+        constraints: &[Constraints<'_>; 2],
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported>
@@ -75,7 +75,7 @@ impl<F> Updater<'_, F> {
         let before = bare(manifold);
         self.answer(pos12, operands, constraints, prediction, manifold)?;
         recorder.look_at(&PairView {
-            shapes: map_pair(operands, |operand| operand.shape),
+            shapes: map_pair(*operands, |operand| operand.shape),
             pos12,
             prediction,
             has_corrected_normals: !constraints.iter().all(Constraints::are_none),
@@ -90,8 +90,8 @@ impl<F> Updater<'_, F> {
     fn answer<M, C>(
         self,
         pos12: &Pose,
-        operands: [Operand<'_>; 2],
-        constraints: [Constraints<'_>; 2],
+        operands: &[Operand<'_>; 2],
+        constraints: &[Constraints<'_>; 2],
         prediction: Real,
         manifold: &mut ContactManifold<M, C>,
     ) -> Result<(), Unsupported>
@@ -100,7 +100,7 @@ impl<F> Updater<'_, F> {
         C: Default + Copy + Send + Sync,
         F: PersistentQueryDispatcher<M, C>,
     {
-        let [g1, g2] = map_pair(operands, |operand| operand.shape);
+        let [g1, g2] = map_pair(*operands, |operand| operand.shape);
         let has_hull = operands[0].is_hull() || operands[1].is_hull();
         let update = UpdateManifold {
             pos12,
@@ -119,7 +119,7 @@ impl<F> Updater<'_, F> {
         } else {
             self.stats.record_left(Left::NoHull);
         }
-        let [c1, c2] = constraints;
+        let [c1, c2] = *constraints;
         c1.with(|c1| {
             c2.with(|c2| {
                 self.fallback

@@ -29,6 +29,8 @@ use mesh::Triangles;
 use sub_manifolds::{SubManifolds, empty_workspace};
 
 /// Updates the manifolds of a pair in which a shape has parts. `false` if none has.
+// perf: inlined, its arguments would go through memory in pairs without parts.
+#[inline(never)]
 pub(crate) fn contact_manifolds<M, C, F>(
     dispatcher: &dyn PersistentQueryDispatcher<M, C>,
     updater: Updater<'_, F>,

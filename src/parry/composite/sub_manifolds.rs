@@ -110,8 +110,8 @@ where
         // As in parry's routines, an unsupported pair has no contacts.
         let _ = self.updater.update(
             pos12,
-            [part_1.operand, part_2.operand],
-            constraints,
+            &[part_1.operand, part_2.operand],
+            &constraints,
             self.prediction,
             &mut self.manifolds[manifold],
         );

@@ -16,6 +16,7 @@ mod digest;
 pub(crate) mod epoch;
 pub(crate) mod registry;
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use parry3d::shape::ConvexPolyhedron;
@@ -65,9 +66,9 @@ struct Slot {
     address: Address,
     prepared: Arc<PreparedHull>,
     /// When it was last used, by the table's `Aging`.
-    used: u64,
+    used: Cell<u64>,
     /// The epoch in which it was last verified.
-    epoch: Epoch,
+    epoch: Cell<Epoch>,
 }
 
 impl Slot {
@@ -75,23 +76,23 @@ impl Slot {
         Self {
             address,
             prepared: PreparedHull::get_or_build(polyhedron),
-            used: 0,
-            epoch: Epoch::default(),
+            used: Cell::default(),
+            epoch: Cell::default(),
         }
     }
 
     /// Whether it belongs to the polyhedron at its address. This was verified in this epoch, or is now.
     #[inline(always)]
     fn matches(&self, polyhedron: &ConvexPolyhedron, epoch: Epoch) -> bool {
-        self.epoch == epoch || self.prepared.matches(polyhedron)
+        self.epoch.get() == epoch || self.prepared.matches(polyhedron)
     }
 
-    /// Marks the slot as verified and returns a reference to its hull, if it has one.
+    /// Marks the slot as verified, and returns its hull, if it has one.
     #[inline(always)]
-    fn proved(&mut self, place: usize, now: u64, epoch: Epoch) -> Option<HullRef> {
-        self.used = now;
-        self.epoch = epoch;
-        self.prepared.hull().is_some().then_some(HullRef(place))
+    fn proved(&self, now: u64, epoch: Epoch) -> Option<&Hull> {
+        self.used.set(now);
+        self.epoch.set(epoch);
+        self.prepared.hull()
     }
 
     /// The key by which the same polyhedron at the same address is recognised.
@@ -136,9 +137,9 @@ impl HullCache {
         let before = self.slots.len();
         let aging = &mut self.aging;
         self.slots.retain(|slot| {
-            let goes = is_old(slot.used);
+            let goes = is_old(slot.used.get());
             if goes {
-                aging.dropped(slot.key(), slot.used);
+                aging.dropped(slot.key(), slot.used.get());
             }
             !goes
         });
@@ -154,16 +155,30 @@ impl HullCache {
         PreparedHull::forget_unused();
     }
 
-    /// The hull of a polyhedron, built if it is new; `None` if it has none.
+    /// The hull of a polyhedron that is found at once. It may also be in the map.
     #[inline(always)]
-    pub fn find(&mut self, polyhedron: &ConvexPolyhedron, epoch: Epoch) -> Option<HullRef> {
+    pub fn known(&self, polyhedron: &ConvexPolyhedron, epoch: Epoch) -> Option<&Hull> {
+        let place = self.recent_place(polyhedron)?;
+        let slot = self.slots.get(place)?;
+        if slot.matches(polyhedron, epoch) {
+            slot.proved(self.aging.now(), epoch)
+        } else {
+            None
+        }
+    }
+
+    #[inline(always)]
+    fn recent_place(&self, polyhedron: &ConvexPolyhedron) -> Option<usize> {
         let address = polyhedron.points().as_ptr() as Address;
-        let (known, place) = *self.recent.class(address);
-        if known == address
-            && let Some(slot) = self.slots.get_mut(place)
-            && slot.matches(polyhedron, epoch)
-        {
-            return slot.proved(place, self.aging.now(), epoch);
+        let (known, place) = self.recent.0[DirectMapped::class(address)];
+        (known == address).then_some(place)
+    }
+
+    /// The hull of a polyhedron, built if it is new; `None` if it has none.
+    #[inline]
+    pub fn find(&mut self, polyhedron: &ConvexPolyhedron, epoch: Epoch) -> Option<HullRef> {
+        if self.known(polyhedron, epoch).is_some() {
+            return self.recent_place(polyhedron).map(HullRef);
         }
         self.find_among_all(polyhedron, epoch)
     }
@@ -175,8 +190,9 @@ impl HullCache {
             Some(i) if self.slots[i].matches(polyhedron, epoch) => i,
             known => self.insert(address, polyhedron, known),
         };
-        *self.recent.class(address) = (address, place);
-        self.slots[place].proved(place, self.aging.now(), epoch)
+        self.recent.0[DirectMapped::class(address)] = (address, place);
+        let hull = self.slots[place].proved(self.aging.now(), epoch);
+        hull.is_some().then_some(HullRef(place))
     }
 
     #[cold]
@@ -229,7 +245,7 @@ impl Default for DirectMapped {
 
 impl DirectMapped {
     #[inline(always)]
-    fn class(&mut self, address: Address) -> &mut (Address, usize) {
-        &mut self.0[(address >> 4 ^ address >> 12) % CLASSES]
+    fn class(address: Address) -> usize {
+        (address >> 4 ^ address >> 12) % CLASSES
     }
 }

@@ -73,7 +73,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
                 let is_kept = if let [Constraints::None, Constraints::None] = self.constraints {
                     near.update(&mut manifold, &mut scratch.patch)
                 } else {
-                    let constraints = (self.constraints, self.pos12);
+                    let constraints = (*self.constraints, self.pos12);
                     near.update_constrained(&mut manifold, constraints, &mut scratch.patch);
                     false
                 };

@@ -32,7 +32,7 @@ use sink::ManifoldSink;
 pub(crate) struct UpdateManifold<'a, M, C> {
     pub pos12: &'a Pose,
     pub prediction: Real,
-    pub constraints: [Constraints<'a>; 2],
+    pub constraints: &'a [Constraints<'a>; 2],
     pub manifold: &'a mut ContactManifold<M, C>,
     pub stats: &'a SharedStats,
 }
@@ -66,7 +66,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             contacts: PolytopeContacts {
                 cso: &cso,
                 max_distance,
-                constraints: &self.constraints,
+                constraints: self.constraints,
                 pos12: self.pos12,
                 scratch: &mut workspace.clip,
             },
