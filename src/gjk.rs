@@ -73,9 +73,9 @@ pub enum AxisTest {
     Supporting(CsoVertex),
 }
 
-/// Whether a cached `axis` (unit, frame 1) still separates by more than `beyond`, by one support pair. This
-/// is the incremental part of separating-axis GJK.
-#[inline(always)]
+/// Whether a cached `axis` (unit, frame 1) still separates by more than `beyond`, by one support pair or a
+/// bound. This is the incremental part of separating-axis GJK.
+#[inline]
 pub fn test_axis<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     axis: DVec3,
@@ -84,6 +84,24 @@ pub fn test_axis<A: Support, B: Support>(
     cost: &mut Cost,
 ) -> AxisTest {
     debug_assert!(is_unit(axis), "no unit vector: {axis}");
+    match separation_bound(cso, axis, cost) {
+        Some(separation) if separation > beyond => AxisTest::Separating(SeparatingAxis {
+            axis,
+            separation,
+            ids: start,
+        }),
+        _ => test_support_pair(cso, axis, start, beyond, cost),
+    }
+}
+
+#[inline(always)]
+fn test_support_pair<A: Support, B: Support>(
+    cso: &Cso<'_, A, B>,
+    axis: DVec3,
+    start: [VertexId; 2],
+    beyond: f64,
+    cost: &mut Cost,
+) -> AxisTest {
     let (on_2, id_2) = cso.support_2(axis, start[1], cost);
     // The bounding sphere of shape 1 may suffice: then none of its vertices is read. Rounding may make the
     // axis longer than 1; the mean of 1 and its squared length is at least its length.
@@ -113,6 +131,18 @@ pub fn test_axis<A: Support, B: Support>(
     } else {
         AxisTest::Supporting(vertex)
     }
+}
+
+/// A lower bound of the separation along an axis, if it costs less than a support pair.
+#[inline]
+fn separation_bound<A: Support, B: Support>(
+    cso: &Cso<'_, A, B>,
+    axis: DVec3,
+    cost: &mut Cost,
+) -> Option<f64> {
+    let reach_1 = cso.shape_1.extent_bound(axis, cost)?;
+    let reach_2 = (cso.shape_2).extent_bound(-cso.pose.direction_to_2(axis), cost)?;
+    Some(axis.dot(cso.pose.translation()) - reach_2 - reach_1)
 }
 
 /// Distance and nearest points, starting from vertices of the Minkowski difference. Only the first three are

@@ -1,6 +1,8 @@
 //! Ids of the parts of a shape. Each kind has its own type, so that a face cannot be mistaken for a vertex.
 
 use std::fmt;
+use std::num::NonZeroU64;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Defines an id, which is a number of 30 bits at most.
 macro_rules! id {
@@ -66,4 +68,24 @@ id! {
 id! {
     /// An edge of a polytope.
     EdgeId
+}
+
+/// Tells a shape from every other that this process has built. Copies, which never change, share it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub struct ShapeId(NonZeroU64);
+
+impl ShapeId {
+    /// One that no shape has.
+    pub(crate) fn new() -> Self {
+        static LAST: AtomicU64 = AtomicU64::new(0);
+        let number = LAST.fetch_add(1, Ordering::Relaxed) + 1;
+        Self(NonZeroU64::new(number).unwrap_or(NonZeroU64::MAX))
+    }
+}
+
+/// Equal shapes look equal.
+impl fmt::Debug for ShapeId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("ShapeId")
+    }
 }

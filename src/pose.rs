@@ -75,6 +75,12 @@ impl RelativePose {
         }
     }
 
+    /// Where the origin of frame 2 is, in frame 1.
+    #[inline]
+    pub(crate) fn translation(&self) -> DVec3 {
+        self.translation
+    }
+
     /// The pose of shape 1 in frame 2.
     #[inline]
     pub fn inverse(&self) -> Self {

@@ -12,7 +12,7 @@ pub enum Stage {
     /// The bounding spheres are apart, or the bounding sphere of a hull is above a half-space.
     BoundingSpheres,
     /// One or two support pairs proved separation, along the axis of the previous frame (for a new pair, the
-    /// line of centres) or along a tilted one.
+    /// line of centres) or along a tilted one. If the pair hardly moved since, it is proved without any.
     Axis,
     /// The features of the previous frame, re-evaluated, certified the distance or depth, and the contacts
     /// kept their places.

@@ -8,7 +8,7 @@ use glam::{DVec3, Vec3};
 use crate::pose::RelativePose;
 use crate::stats::Cost;
 
-pub use crate::ids::{EdgeId, FaceId, VertexId};
+pub use crate::ids::{EdgeId, FaceId, ShapeId, VertexId};
 
 /// A convex shape as its support mapping, in its own frame.
 pub trait Support {
@@ -41,6 +41,18 @@ pub trait Support {
     #[inline]
     fn clamp_vertex(&self, _vertex: VertexId) -> VertexId {
         VertexId::default()
+    }
+
+    /// An upper bound of the greatest `dir · p` over the shape, for about a unit vector `dir`. It is close where
+    /// there is one that costs less than a support point.
+    fn extent_bound(&self, dir: DVec3, cost: &mut Cost) -> Option<f64> {
+        let _ = (dir, cost);
+        None
+    }
+
+    /// Tells the shape from all others, if it has such an id.
+    fn id(&self) -> Option<ShapeId> {
+        None
     }
 
     /// A point inside, and not on the boundary if the shape has volume.

@@ -16,7 +16,7 @@ pub use error::HullError;
 use glam::{DVec3, Vec3};
 
 use crate::stats::Cost;
-use crate::support::{EdgeId, FaceId, FacePoints, Polytope, Support, VertexId};
+use crate::support::{EdgeId, FaceId, FacePoints, Polytope, ShapeId, Support, VertexId};
 use climb::HillClimb;
 use faces::Faces;
 use graph::EdgeGraph;
@@ -37,6 +37,7 @@ pub struct Hull {
     graph: EdgeGraph,
     faces: Faces,
     search: SupportSearch,
+    id: ShapeId,
 }
 
 /// How extreme vertices are found.
@@ -132,6 +133,20 @@ impl Support for Hull {
     fn extent(&self, dir: DVec3) -> f64 {
         let extents = self.points.iter().map(|point| dir.dot(point.as_dvec3()));
         extents.fold(f64::NEG_INFINITY, f64::max)
+    }
+
+    #[inline]
+    fn extent_bound(&self, dir: DVec3, cost: &mut Cost) -> Option<f64> {
+        let SupportSearch::Scan(scan) = &self.search else {
+            return None;
+        };
+        cost.supports += 1;
+        Some(dir.dot(self.center) + self.radius * scan.greatest_height(dir))
+    }
+
+    #[inline]
+    fn id(&self) -> Option<ShapeId> {
+        Some(self.id)
     }
 
     #[inline]

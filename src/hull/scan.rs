@@ -78,6 +78,17 @@ impl Scan {
         highest.into()
     }
 
+    /// An upper bound of the heights along about a unit vector, over the centre and in units of the radius.
+    #[inline]
+    pub fn greatest_height(&self, dir: DVec3) -> f64 {
+        let dir = dir.as_vec3().to_array().map(f32x8::splat);
+        let mut highest = f32x8::splat(f32::NEG_INFINITY);
+        for [x, y, z] in &self.rows {
+            highest = highest.fast_max(*x * dir[0] + *y * dir[1] + *z * dir[2]);
+        }
+        f64::from(greatest(highest) + SCAN_ROUNDING)
+    }
+
     /// A bit for each vertex that may be the highest. At least one is set.
     #[inline(always)]
     fn candidates(&self, dir: DVec3) -> u64 {
@@ -95,10 +106,7 @@ impl Scan {
             *height = *x * dir[0] + *y * dir[1] + *z * dir[2];
             highest = highest.fast_max(*height);
         }
-        let [low, high]: [f32x4; 2] = bytemuck::cast(highest);
-        let [a, b, c, d] = low.fast_max(high).to_array();
-        let least = max_no_nan(max_no_nan(a, b), max_no_nan(c, d)) - SCAN_ROUNDING * size as f32;
-        let least = f32x8::splat(least);
+        let least = f32x8::splat(greatest(highest) - SCAN_ROUNDING * size as f32);
         let mut candidates = 0;
         for (number, height) in heights[..self.rows.len()].iter().enumerate() {
             let bits = height.simd_ge(least).to_bitmask();
@@ -112,6 +120,13 @@ impl Scan {
     pub fn heap_bytes(&self) -> usize {
         size_of_val(&*self.rows)
     }
+}
+
+#[inline]
+fn greatest(values: f32x8) -> f32 {
+    let [low, high]: [f32x4; 2] = bytemuck::cast(values);
+    let [a, b, c, d] = low.fast_max(high).to_array();
+    max_no_nan(max_no_nan(a, b), max_no_nan(c, d))
 }
 
 /// The greater of two numbers. Neither is NaN, so the check for it in `f32::max` is not needed.

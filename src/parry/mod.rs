@@ -1,5 +1,6 @@
 //! The interface to rapier and parry: which shapes are ours, their manifolds, and scene queries.
 
+mod apart_cache;
 mod capsules;
 mod composite;
 mod constraints;

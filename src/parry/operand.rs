@@ -106,7 +106,7 @@ impl<'a> Operand<'a> {
     }
 
     /// The hull, if the shape is one and the cache finds it at once.
-    #[inline(always)]
+    #[inline]
     pub fn known<'h>(&self, cache: &'h HullCache, epoch: Epoch) -> Option<PreparedOperand<'h>>
     where
         'a: 'h,

@@ -8,8 +8,9 @@ use crate::curved::Body;
 use crate::hull::Hull;
 use crate::map_pair::map_pair;
 use crate::parry::convert::{self, Core, HalfSpace};
+use crate::parry::hull_cache::HullCache;
 use crate::parry::hull_cache::epoch::Epoch;
-use crate::parry::operand::Operand;
+use crate::parry::operand::{Operand, PreparedOperand};
 use crate::parry::order::PairOrder;
 use crate::parry::workspace::{ThreadWorkspace, Workspace};
 use crate::pose::{RelativePose, ValidPose};
@@ -46,6 +47,16 @@ impl<'a, B, A> Pair<'a, B, A> {
             self.hull.radius() + border_1,
             self.other.radius() + border_2,
         ]
+    }
+
+    /// The size of both shapes without borders.
+    #[inline(always)]
+    pub fn size(&self) -> f64
+    where
+        A: Support,
+        B: Support,
+    {
+        self.hull.radius() + self.other.radius()
     }
 
     /// The Minkowski difference without borders.
@@ -146,20 +157,10 @@ pub(crate) fn visit_operands<V: PairVisitor>(
                  hulls, workspace, ..
              }| {
                 hulls.begin();
-                let known = [
-                    operand_1.known(hulls, epoch),
-                    operand_2.known(hulls, epoch),
-                ];
+                let known = [operand_1.known(hulls, epoch), operand_2.known(hulls, epoch)];
                 let [first, second] = match known {
                     [Some(first), Some(second)] => [first, second],
-                    _ => {
-                        let first = operand_1.prepare(hulls, epoch).ok_or(Unsupported)?;
-                        let second = operand_2.prepare(hulls, epoch).ok_or(Unsupported)?;
-                        [
-                            first.hull(hulls).ok_or(Unsupported)?,
-                            second.hull(hulls).ok_or(Unsupported)?,
-                        ]
-                    }
+                    _ => prepare([operand_1, operand_2], hulls, epoch).ok_or(Unsupported)?,
                 };
                 let pair = Pair {
                     hull: first.hull,
@@ -173,6 +174,18 @@ pub(crate) fn visit_operands<V: PairVisitor>(
         [true, false] => hull(operand_1).visit(operand_2.shape, &mut visitor),
         [false, _] => hull(operand_2).visit(operand_1.shape, &mut visitor),
     }
+}
+
+/// The hulls of both operands, if they have one. Those that are new are prepared.
+#[inline(never)]
+fn prepare<'a>(
+    [operand_1, operand_2]: [&Operand<'a>; 2],
+    hulls: &'a mut HullCache,
+    epoch: Epoch,
+) -> Option<[PreparedOperand<'a>; 2]> {
+    let first = operand_1.prepare(hulls, epoch)?;
+    let second = operand_2.prepare(hulls, epoch)?;
+    Some([first.hull(hulls)?, second.hull(hulls)?])
 }
 
 /// Why a pair with a hull is left to the fallback.

@@ -6,6 +6,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use crate::curved::CurvedScratch;
 use crate::epa::{EpaScratch, PolytopeCache};
 use crate::manifold::ClipScratch;
+use crate::parry::apart_cache::ApartCache;
 use crate::parry::hull_cache::HullCache;
 use crate::parry::hull_cache::registry::PreparedHull;
 use crate::parry::seams_cache::SeamsCache;
@@ -68,4 +69,5 @@ pub(crate) struct Workspace {
     pub epa: EpaScratch,
     pub clip: ClipScratch,
     pub polytope_cache: PolytopeCache,
+    pub apart_cache: ApartCache,
 }

@@ -56,7 +56,7 @@ pub use crate::gjk::SeparatingAxis;
 pub use crate::pose::RelativePose;
 pub use crate::ray_cast::{Impact, RayCast, ray_cast};
 pub use crate::stats::Cost;
-pub use crate::support::{Cso, EdgeId, FaceId, Polytope, Support, VertexId};
+pub use crate::support::{Cso, EdgeId, FaceId, Polytope, ShapeId, Support, VertexId};
 
 use crate::epa::PolytopeCache;
 use crate::tolerance::DEPTH_GAP;

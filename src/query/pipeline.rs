@@ -55,6 +55,12 @@ pub(crate) trait Sink {
     /// The shapes are farther apart than the query's maximum distance.
     fn separated(&mut self, axis: &SeparatingAxis);
 
+    /// The same, along the axis that the memory has.
+    #[inline]
+    fn still_separated(&mut self, axis: &SeparatingAxis) {
+        self.separated(axis);
+    }
+
     /// The shapes are this near, or overlap.
     fn near(&mut self, proximity: &Proximity);
 }
@@ -184,7 +190,7 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
             PairMemory::None => self.search_along(strategy, self.cso.towards_origin()),
             PairMemory::Axis(axis, ids) => match self.test_axis(axis, ids) {
                 AxisTest::Separating(apart) => {
-                    sink.separated(&apart);
+                    sink.still_separated(&apart);
                     return Some(Stage::Axis);
                 }
                 AxisTest::Supporting(vertex) => {

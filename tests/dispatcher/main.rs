@@ -1,5 +1,6 @@
 //! What the dispatcher answers about pairs of shapes, against exact answers and parry's.
 
+mod apart;
 mod axis_frame;
 mod bad_input;
 mod balls;

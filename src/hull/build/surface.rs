@@ -14,6 +14,7 @@ use crate::hull::graph::EdgeGraph;
 use crate::hull::scan::{self, Scan};
 use crate::hull::start_table::StartTable;
 use crate::hull::{Hull, HullError, SupportSearch};
+use crate::ids::ShapeId;
 use crate::stats::Cost;
 use crate::support::Polytope;
 use crate::tolerance::MIN_EXTENT;
@@ -95,6 +96,7 @@ impl<'a> Surface<'a> {
             faces,
             center,
             radius,
+            id: ShapeId::new(),
         };
         hull.validate_interior()?;
         Ok(hull)

@@ -156,7 +156,7 @@ impl HullCache {
     }
 
     /// The hull of a polyhedron that is found at once. It may also be in the map.
-    #[inline(always)]
+    #[inline]
     pub fn known(&self, polyhedron: &ConvexPolyhedron, epoch: Epoch) -> Option<&Hull> {
         let place = self.recent_place(polyhedron)?;
         let slot = self.slots.get(place)?;
@@ -167,7 +167,7 @@ impl HullCache {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn recent_place(&self, polyhedron: &ConvexPolyhedron) -> Option<usize> {
         let address = polyhedron.points().as_ptr() as Address;
         let (known, place) = self.recent.0[DirectMapped::class(address)];

@@ -14,13 +14,14 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, Unsupported};
 
 use crate::curved::Body;
+use crate::parry::apart_cache::ApartPair;
 use crate::parry::constraints::Constraints;
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space as plane;
 use crate::parry::pair::{Pair, PairVisitor, valid_pose};
 use crate::parry::workspace::Workspace;
 use crate::query::{Full, Query};
-use crate::stats::{Cost, SharedStats};
+use crate::stats::{Cost, SharedStats, Stage};
 use crate::support::{Polytope, Support};
 pub(crate) use curved::CurvedPair;
 use half_space::HalfSpaceContacts;
@@ -48,33 +49,13 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,
     ) -> Result<(), Unsupported> {
-        let pose = pair.pose(valid_pose(self.pos12)?);
-        let cso = pair.cso(&pose);
-        let max_distance = pair.core_distance(self.prediction, cso.size());
+        let max_distance = pair.core_distance(self.prediction, pair.size());
         let mut cost = Cost::default();
-        let mut query = Query {
-            cso: &cso,
-            max_distance,
-            polytope_cache: Some((&mut workspace.polytope_cache, key_of(self.manifold))),
-            scratch: &mut workspace.epa,
-            cost: &mut cost,
+        let stage = match self.apart_pair(pair) {
+            Some(apart) if workspace.apart_cache.proves(apart, max_distance) => apart.stage(),
+            apart => self.query(pair, max_distance, apart, workspace, &mut cost)?,
         };
-        let mut sink = ManifoldSink {
-            manifold: &mut *self.manifold,
-            pair,
-            frame: AxisFrame::of(&cso),
-            contacts: PolytopeContacts {
-                cso: &cso,
-                max_distance,
-                constraints: self.constraints,
-                pos12: self.pos12,
-                scratch: &mut workspace.clip,
-            },
-            last: None,
-            is_kept: false,
-        };
-        let stage = query.run_into(Full, &mut sink).ok_or(Unsupported)?;
-        self.stats.record(sink.stage(stage), &cost);
+        self.stats.record(stage, &cost);
         Ok(())
     }
 
@@ -97,6 +78,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             },
             last: None,
             is_kept: false,
+            still_apart: None,
         };
         let mut cost = Cost::default();
         let stage = plane::run_into(pair, &pose, max_distance, &mut sink, &mut cost);
@@ -115,6 +97,64 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             order: pair.order,
         };
         self.update_curved(&pair, &mut workspace.curved)
+    }
+}
+
+impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
+    /// Runs the query, and keeps the proof if the shapes are `apart` as the manifold says.
+    #[inline]
+    fn query<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        max_distance: f64,
+        apart: Option<ApartPair<'_>>,
+        workspace: &mut Workspace,
+        cost: &mut Cost,
+    ) -> Result<Stage, Unsupported> {
+        let pose = pair.pose(valid_pose(self.pos12)?);
+        let cso = pair.cso(&pose);
+        let frame = AxisFrame::of(&cso);
+        let mut query = Query {
+            cso: &cso,
+            max_distance,
+            polytope_cache: Some((&mut workspace.polytope_cache, key_of(self.manifold))),
+            scratch: &mut workspace.epa,
+            cost,
+        };
+        let mut sink = ManifoldSink {
+            manifold: &mut *self.manifold,
+            pair,
+            frame,
+            contacts: PolytopeContacts {
+                cso: &cso,
+                max_distance,
+                constraints: self.constraints,
+                pos12: self.pos12,
+                scratch: &mut workspace.clip,
+            },
+            last: None,
+            is_kept: false,
+            still_apart: None,
+        };
+        let stage = query.run_into(Full, &mut sink).ok_or(Unsupported)?;
+        if let (Some(apart), Some(separation)) = (apart, sink.still_apart(stage, &cso)) {
+            workspace
+                .apart_cache
+                .store(apart, separation, cso.size(), frame.lever(&cso));
+        }
+        Ok(sink.stage(stage))
+    }
+
+    /// What a proof that two hulls are apart is known by, if the manifold says that they are.
+    #[inline]
+    fn apart_pair<B: Support>(&self, pair: &Pair<'_, B>) -> Option<ApartPair<'a>> {
+        let is_empty = self.manifold.points.is_empty();
+        is_empty.then_some(ApartPair {
+            key: key_of(self.manifold),
+            shapes: [pair.hull.id()?, pair.other.id()?],
+            axis: self.manifold.local_n1,
+            pose: self.pos12,
+        })
     }
 }
 

@@ -4,9 +4,9 @@
 //! rapier nothing; a workspace would make it rebuild its solver graph in every step. So the memory is in
 //! unused fields of the manifold:
 //!
-//! - without points, `local_n1` is the separating axis (as in parry) in an [`AxisFrame`], or zero if the
-//!   bounding spheres are apart; `local_n2`, which is unused then, contains the two extreme vertices as whole
-//!   numbers;
+//! - without points, `local_n1` is the separating axis (as in parry) in an [`AxisFrame`], or zero if none was
+//!   needed: the bounding spheres are apart since the last contact. `local_n2`, which is unused then, contains
+//!   two vertices as whole numbers, which were extreme when the axis was found;
 //! - with points, `local_n1` is the contact normal, and the feature ids of the first point are the features
 //!   in contact.
 //!
@@ -42,6 +42,16 @@ impl<'a> AxisFrame<'a> {
             Self::Second(cso.pose)
         } else {
             Self::First
+        }
+    }
+
+    /// How far a point of the other shape is, at most, from the point that its rotation leaves where it is.
+    pub fn lever<A: Support, B: Support>(self, cso: &Cso<'_, A, B>) -> f64 {
+        match self {
+            Self::First => cso.shape_2.center().length() + cso.shape_2.radius(),
+            Self::Second(pose) => {
+                (cso.shape_1.center() - pose.translation()).length() + cso.shape_1.radius()
+            }
         }
     }
 

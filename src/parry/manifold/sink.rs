@@ -8,6 +8,7 @@ use crate::parry::pair::Pair;
 use crate::pose::RelativePose;
 use crate::query::{FlushFaces, LastContacts, PairMemory, Proximity, Sink};
 use crate::stats::Stage;
+use crate::support::{Cso, Support};
 
 /// Finds the contacts of shapes that are near each other.
 pub(super) trait UpdateContacts {
@@ -45,12 +46,27 @@ pub(super) struct ManifoldSink<'a, 'p, M, C, B, U> {
     /// The contacts of the manifold. They are read when they are first needed.
     pub last: Option<LastContacts>,
     pub is_kept: bool,
+    /// How far the memory that the manifold has, and keeps, proves the shapes to be apart.
+    pub still_apart: Option<f64>,
 }
 
 impl<M, C, B, U> ManifoldSink<'_, '_, M, C, B, U> {
     #[inline(always)]
     fn kernel_manifold(&mut self) -> KernelManifold<'_, M, C> {
         KernelManifold::new(self.manifold, self.pair, self.frame)
+    }
+
+    /// How far shapes are apart of which the manifold says so already.
+    #[inline]
+    pub fn still_apart(
+        &self,
+        stage: Stage,
+        cso: &Cso<'_, impl Support, impl Support>,
+    ) -> Option<f64> {
+        match stage {
+            Stage::BoundingSpheres => Some(cso.center().length() - cso.size()),
+            _ => self.still_apart,
+        }
     }
 
     /// The stage to count: the query's, unless the contacts stayed where they were.
@@ -89,7 +105,20 @@ where
 
     #[inline(always)]
     fn spheres_apart(&mut self) {
-        self.kernel_manifold().forget();
+        if !self.manifold.points.is_empty() {
+            self.kernel_manifold().forget();
+        }
+    }
+
+    /// The manifold stays as it is, with the vertices of the first proof. So nothing depends on whether this was
+    /// found here or in the cache of proofs.
+    #[inline]
+    fn still_separated(&mut self, apart: &SeparatingAxis) {
+        if self.manifold.points.is_empty() {
+            self.still_apart = Some(apart.separation);
+        } else {
+            self.separated(apart);
+        }
     }
 
     #[inline(always)]
