@@ -179,13 +179,15 @@ fn sides_by_start(triangles: &[[u32; 3]], count: usize) -> (Vec<DirectedEdge>, V
         first[v] += first[v - 1];
     }
     let mut sides = vec![DirectedEdge::default(); starts.len()];
-    for (half_edge, &from) in (0..).zip(starts) {
-        let place = &mut first[from as usize + 1];
-        sides[*place as usize] = DirectedEdge {
-            to: starts[next(half_edge) as usize] as u16,
-            half_edge,
-        };
-        *place += 1;
+    for (t, &[a, b, c]) in (0..).zip(triangles) {
+        for (half_edge, from, to) in [(3 * t, a, b), (3 * t + 1, b, c), (3 * t + 2, c, a)] {
+            let place = &mut first[from as usize + 1];
+            sides[*place as usize] = DirectedEdge {
+                to: to as u16,
+                half_edge,
+            };
+            *place += 1;
+        }
     }
     first.pop();
     (sides, first)

@@ -110,8 +110,18 @@ pub(super) fn validate_convex(
             let ends = [mesh.start(h), mesh.end(h)];
             let [third, opposite] = [h, twin].map(|h| mesh.end(next(h)));
             let ([a, b], c, d) = (ends.map(at), at(third), at(opposite));
-            let across = (b - a).cross(d - c);
             let rise = (b - a).cross(c - a).dot(d - a);
+            let [one, other] = [h, twin].map(|h| surface.areas[triangle(h)]);
+            let area = if one > other { one } else { other };
+            // The two diagonals span at most both areas, so such an edge is far from a dent.
+            if -rise > STEEP_EDGE * radius * area {
+                continue;
+            }
+            bends.is_steep[ends[0] as usize] = false;
+            bends.is_steep[ends[1] as usize] = false;
+            // Twice, since the centre may be anywhere.
+            bends.everywhere &= -rise > 2.0 * FLAT_EDGE * radius * area;
+            let across = (b - a).cross(d - c);
             let rounding = MAX_DENT * radius * across.length();
             if rise > rounding {
                 return Err(HullError::NotConvex(opposite as usize));
@@ -121,13 +131,6 @@ pub(super) fn validate_convex(
                     bends.at_flat_edge[v as usize] = true;
                 }
             }
-            let [one, other] = [h, twin].map(|h| surface.areas[triangle(h)]);
-            let area = if one > other { one } else { other };
-            let is_steep = -rise >= STEEP_EDGE * radius * area;
-            bends.is_steep[ends[0] as usize] &= is_steep;
-            bends.is_steep[ends[1] as usize] &= is_steep;
-            // Twice, since the centre may be anywhere.
-            bends.everywhere &= is_steep || -rise > 2.0 * FLAT_EDGE * radius * area;
         }
     }
     Ok(bends)
