@@ -11,7 +11,7 @@ const PREDICTION: Real = 0.02;
 
 /// A way past another shape, or into it, in frames of any size.
 fn wanderings(rng: &mut Rng) -> Vec<Pose> {
-    let [from, to] = [(); 2].map(|()| rng.direction() * rng.range(0.8, 3.5));
+    let [from, to] = [(); 2].map(|()| rng.direction() * rng.range(0.2, 2.5));
     let axis = rng.direction();
     let turn = rng.range(0.0, 3.0);
     let jump = 10_f64.powf(rng.range(-6.0, -1.0));
@@ -90,7 +90,7 @@ fn a_contact_is_found_in_the_frame_in_which_it_begins() {
             found += usize::from(!cold.points.is_empty());
         }
     }
-    assert!(found > 200, "{found} contacts");
+    assert!(found > 100, "{found} contacts");
 }
 
 /// What was proved of a shape says nothing about another in its place, nor about one with a wider border, nor
