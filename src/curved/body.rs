@@ -17,7 +17,7 @@ pub struct Ruling {
 
 /// A circular edge.
 #[derive(Clone, Copy, Debug)]
-pub struct Rim {
+pub struct CircularEdge {
     /// A point of its axis.
     pub center: DVec3,
     /// The unit vector along its axis.
@@ -38,7 +38,7 @@ pub trait Body: Support {
     fn edge(&self, dir: DVec3, vertex: VertexId) -> Option<[DVec3; 2]>;
 
     /// The rim on which the point is that is extreme along `dir`, if it is on one.
-    fn rim(&self, dir: DVec3) -> Option<Rim>;
+    fn rim(&self, dir: DVec3) -> Option<CircularEdge>;
 
     /// The piece at `vertex`, extreme along `dir`, that looks most along `dir`. `border` is the width of the
     /// rounded border, by which the piece is moved outwards. The corners of a polygon go to `corners`.

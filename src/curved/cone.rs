@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::body::{Body, Rim, Ruling};
+use super::body::{Body, CircularEdge, Ruling};
 use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall};
 use crate::primitive::Cone;
 use crate::support::VertexId;
@@ -31,9 +31,9 @@ impl Body for Cone {
         None
     }
 
-    fn rim(&self, dir: DVec3) -> Option<Rim> {
+    fn rim(&self, dir: DVec3) -> Option<CircularEdge> {
         let is_apex = dir.y > self.slope() * dir.x.hypot(dir.z);
-        (!is_apex).then(|| Rim {
+        (!is_apex).then(|| CircularEdge {
             center: DVec3::NEG_Y * self.half_height(),
             axis: DVec3::Y,
             radius: self.rim_radius(),

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::body::{Body, Rim};
+use super::body::{Body, CircularEdge};
 use super::stationary::NormalSeparation;
 use crate::support::Cso;
 use crate::tolerance::SAME_NORMAL;
@@ -31,7 +31,7 @@ impl Curvature {
 }
 
 /// A tangent of a rim at its extreme point, of any length, and its weight.
-fn bend(rim: Option<Rim>, normal: DVec3) -> Option<(DVec3, f64)> {
+fn bend(rim: Option<CircularEdge>, normal: DVec3) -> Option<(DVec3, f64)> {
     let Some(rim) = rim else {
         return Some((DVec3::ZERO, 0.0));
     };

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::body::{Body, Rim, Ruling};
+use super::body::{Body, CircularEdge, Ruling};
 use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall};
 use crate::primitive::Cylinder;
 use crate::support::VertexId;
@@ -23,8 +23,8 @@ impl Body for Cylinder {
         None
     }
 
-    fn rim(&self, dir: DVec3) -> Option<Rim> {
-        Some(Rim {
+    fn rim(&self, dir: DVec3) -> Option<CircularEdge> {
+        Some(CircularEdge {
             center: DVec3::Y * self.half_height().copysign(dir.y),
             axis: DVec3::Y,
             radius: self.rim_radius(),

@@ -11,6 +11,7 @@
 
 mod body;
 mod certificate;
+mod circle;
 mod cone;
 mod contacts;
 mod curvature;
@@ -18,6 +19,7 @@ mod cylinder;
 mod discs;
 mod lines;
 mod outline;
+mod over;
 mod patch;
 mod piece;
 mod place;
@@ -27,7 +29,7 @@ mod rim_edge;
 mod search;
 mod stationary;
 
-pub use body::{Body, Rim, Ruling};
+pub use body::{Body, CircularEdge, Ruling};
 pub use contacts::contacts;
 pub use patch::{ContactPlace, Patch};
 pub use piece::Piece;

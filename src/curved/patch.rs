@@ -9,7 +9,7 @@ use super::outline::Flat;
 use super::piece::{Outline, Piece};
 use super::place::Spot;
 use crate::support::{Cso, CsoVertex, VertexId};
-use crate::tolerance::{ON_OUTLINE, SAME_GAP};
+use crate::tolerance::SAME_GAP;
 
 pub use super::place::ContactPlace;
 
@@ -25,7 +25,7 @@ pub struct Patch {
     references: [DVec3; 2],
     /// A length that rounding is relative to.
     size: f64,
-    extreme: CsoVertex,
+    pub(super) extreme: CsoVertex,
     found: Found,
     /// How many places come from contacts of the frame before, and serve for proofs only.
     guesses: usize,
@@ -232,7 +232,7 @@ impl Patch {
     }
 
     /// How far along the normal the borders are from extreme points of the cores.
-    fn border_heights(&self) -> [f64; 2] {
+    pub(super) fn border_heights(&self) -> [f64; 2] {
         [self.border_radii[0], -self.border_radii[1]]
     }
 
@@ -271,66 +271,6 @@ impl Patch {
             [Piece::Line(line), Piece::Flat(_)] => self.add_line(0, &line),
             [Piece::Line(a), Piece::Line(b)] => self.add_two_lines([&a, &b]),
             _ => {}
-        }
-    }
-
-    /// Extreme points of the cores, moved along the normal, if they are over the other piece.
-    fn add_extremes(&mut self) {
-        let extreme = self.extreme;
-        let cores = [extreme.on_1, extreme.on_2()];
-        for (side, at) in cores.into_iter().enumerate() {
-            let spot = Spot::Extreme(extreme.ids[side]);
-            let candidate = PiecePoint {
-                at,
-                spots: by_side(side, [spot, Spot::Inside]),
-            };
-            let mine = self.border_heights()[side];
-            if let Some(other) = self.height_over(1 - side, at) {
-                self.push(candidate, by_side(side, [mine, other]));
-            }
-        }
-    }
-
-    /// How far along the normal a piece is from a point, if it is over the piece.
-    pub(super) fn height_over(&self, side: usize, p: DVec3) -> Option<f64> {
-        match &self.pieces[side] {
-            Piece::Flat(_) => {
-                let flat = self.flat(side)?;
-                flat.is_under(p).then(|| flat.height(p))
-            }
-            Piece::Line(line) => {
-                let outward = self.outward(side);
-                let height = line.exit(p, outward)?;
-                let at = p + outward * height;
-                let [low, high] = line.ends.map(|end| line.surface.axis.dot(end - at));
-                let is_between = low.min(high) <= ON_OUTLINE * self.size
-                    && low.max(high) >= -ON_OUTLINE * self.size;
-                is_between.then(|| self.normal.dot(at - p))
-            }
-            Piece::Point(core) => {
-                let height = self.normal.dot(*core - p);
-                let aside = (*core - p - self.normal * height).length();
-                (aside <= ON_OUTLINE * self.size).then(|| height + self.border_heights()[side])
-            }
-        }
-    }
-
-    pub(super) fn push(&mut self, candidate: PiecePoint, heights: [f64; 2]) {
-        let place = ContactPlace {
-            on_1: candidate.at + self.normal * heights[0],
-            on_2: candidate.at + self.normal * heights[1],
-            distance: heights[1] - heights[0],
-            features: candidate.spots.map(Spot::feature),
-        };
-        if place.distance.is_finite() {
-            self.places.push(place);
-        }
-    }
-
-    /// A candidate on a piece, if it is over the other one.
-    pub(super) fn push_over(&mut self, side: usize, candidate: PiecePoint) {
-        if let Some(height) = self.height_over(1 - side, candidate.at) {
-            self.push(candidate, by_side(side, [0.0, height]));
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::body::{Body, Rim, Ruling};
+use super::body::{Body, CircularEdge, Ruling};
 use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall, across};
 use crate::support::{Polytope, VertexId};
 use crate::tuning::EDGE_ON;
@@ -29,7 +29,7 @@ impl<P: Polytope> Body for P {
         across.map(|to| [from, to])
     }
 
-    fn rim(&self, _: DVec3) -> Option<Rim> {
+    fn rim(&self, _: DVec3) -> Option<CircularEdge> {
         None
     }
 

@@ -2,13 +2,13 @@
 
 use glam::DVec3;
 
-use super::body::{Body, Rim};
+use super::body::{Body, CircularEdge};
 use super::stationary::NormalSeparation;
 use crate::support::Cso;
 use crate::tolerance::SAME_NORMAL;
 
-/// The point of shape 1 where a rim and an edge of overlapping shapes cross, if these prove that no depth is less than that along
-/// the normal at hand, up to `tolerance`.
+/// The point of shape 1 where a rim and an edge of overlapping shapes cross, if these prove that no depth is less
+/// than that along the normal at hand, up to `tolerance`.
 ///
 /// The disc in the rim, swept along the edge, is a part of the difference: an elliptic cylinder with slanted
 /// ends. The depth is its least one if the ball of the depth is in it.
@@ -20,30 +20,38 @@ pub(super) fn proved_crossing<A: Body, B: Body>(
     if at.distance >= 0.0 {
         return None;
     }
-    let [id_1, id_2] = at.extreme.ids;
+    let (sweep, on_1) = sweep_of_first(cso, at).or_else(|| sweep_of_second(cso, at))?;
+    sweep.contains_ball(-at.distance, tolerance).then_some(on_1)
+}
+
+/// A rim of the first shape and an edge of the second one, and their place on shape 1.
+fn sweep_of_first<A: Body, B: Body>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+) -> Option<(Sweep, DVec3)> {
     let outward_2 = -cso.pose.direction_to_2(at.normal);
-    let depth = -at.distance;
-    if let (Some(rim), Some(edge)) = (
-        cso.shape_1.rim(at.normal),
-        cso.shape_2.edge(outward_2, id_2),
-    ) {
-        let seen = Sweep {
-            rim,
-            on_rim: at.extreme.on_1,
-            edge: edge.map(|p| cso.pose.point_to_1(p)),
-            normal: at.normal,
-        };
-        return seen
-            .contains_ball(depth, tolerance)
-            .then_some(at.extreme.on_1);
-    }
-    let (rim, edge) = (
-        cso.shape_2.rim(outward_2)?,
-        cso.shape_1.edge(at.normal, id_1)?,
-    );
+    let rim = cso.shape_1.rim(at.normal)?;
+    let edge = cso.shape_2.edge(outward_2, at.extreme.ids[1])?;
+    let sweep = Sweep {
+        rim,
+        on_rim: at.extreme.on_1,
+        edge: edge.map(|p| cso.pose.point_to_1(p)),
+        normal: at.normal,
+    };
+    Some((sweep, at.extreme.on_1))
+}
+
+/// The same with the shapes' parts exchanged.
+fn sweep_of_second<A: Body, B: Body>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+) -> Option<(Sweep, DVec3)> {
+    let outward_2 = -cso.pose.direction_to_2(at.normal);
+    let rim = cso.shape_2.rim(outward_2)?;
+    let edge = cso.shape_1.edge(at.normal, at.extreme.ids[0])?;
     let on_rim = at.extreme.on_2();
-    let seen = Sweep {
-        rim: Rim {
+    let sweep = Sweep {
+        rim: CircularEdge {
             axis: cso.pose.direction_to_1(rim.axis),
             center: cso.pose.point_to_1(rim.center),
             ..rim
@@ -52,13 +60,12 @@ pub(super) fn proved_crossing<A: Body, B: Body>(
         edge,
         normal: -at.normal,
     };
-    let on_edge = on_rim - at.normal * at.distance;
-    seen.contains_ball(depth, tolerance).then_some(on_edge)
+    Some((sweep, on_rim - at.normal * at.distance))
 }
 
 /// A disc minus an edge.
 struct Sweep {
-    rim: Rim,
+    rim: CircularEdge,
     /// The extreme point of the rim.
     on_rim: DVec3,
     edge: [DVec3; 2],
@@ -70,7 +77,7 @@ impl Sweep {
     fn contains_ball(&self, depth: f64, tolerance: f64) -> bool {
         let [from, to] = self.edge;
         let length = from.distance(to);
-        let (Rim { axis, radius, .. }, along) = (self.rim, (to - from) / length);
+        let (CircularEdge { axis, radius, .. }, along) = (self.rim, (to - from) / length);
         let rise = axis.dot(along);
         // An edge along the axis or across it has no such cylinder.
         let Some(wide) = axis.cross(along).try_normalize() else {

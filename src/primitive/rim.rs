@@ -29,13 +29,10 @@ impl Rim {
 #[inline]
 fn length_across(dir: DVec3) -> f64 {
     let squared = dir.x * dir.x + dir.z * dir.z;
-    // perf: `hypot` is a call, which took a seventh of an update.
-    if squared.is_normal() && squared > SAFE_SQUARE {
+    // perf: `hypot` is a call, which took a seventh of an update. Squares of such sizes have all their digits.
+    if (f64::EPSILON..=f64::MAX).contains(&squared) {
         squared.sqrt()
     } else {
         dir.x.hypot(dir.z)
     }
 }
-
-/// Squares above it have all their digits.
-const SAFE_SQUARE: f64 = f64::MIN_POSITIVE / f64::EPSILON;

@@ -4,7 +4,7 @@ use glam::DVec3;
 use parry3d::query::Unsupported;
 use parry3d::shape::{Shape, ShapeType};
 
-use crate::curved::{Body, Piece, Rim, Ruling};
+use crate::curved::{Body, CircularEdge, Piece, Ruling};
 use crate::map_pair::map_pair;
 use crate::parry::convert::Core;
 use crate::parry::order::PairOrder;
@@ -74,7 +74,7 @@ impl Body for Core {
         of_shape!(self, shape => shape.edge(dir, vertex))
     }
 
-    fn rim(&self, dir: DVec3) -> Option<Rim> {
+    fn rim(&self, dir: DVec3) -> Option<CircularEdge> {
         of_shape!(self, shape => shape.rim(dir))
     }
 

@@ -1,0 +1,70 @@
+//! Points that are over both pieces of a patch.
+
+use glam::DVec3;
+
+use super::patch::{ContactPlace, Patch, PiecePoint, by_side};
+use super::piece::Piece;
+use super::place::Spot;
+use crate::tolerance::ON_OUTLINE;
+
+impl Patch {
+    /// Extreme points of the cores, moved along the normal, if they are over the other piece.
+    pub(super) fn add_extremes(&mut self) {
+        let extreme = self.extreme;
+        let cores = [extreme.on_1, extreme.on_2()];
+        for (side, at) in cores.into_iter().enumerate() {
+            let spot = Spot::Extreme(extreme.ids[side]);
+            let candidate = PiecePoint {
+                at,
+                spots: by_side(side, [spot, Spot::Inside]),
+            };
+            let mine = self.border_heights()[side];
+            if let Some(other) = self.height_over(1 - side, at) {
+                self.push(candidate, by_side(side, [mine, other]));
+            }
+        }
+    }
+
+    /// How far along the normal a piece is from a point, if it is over the piece.
+    pub(super) fn height_over(&self, side: usize, p: DVec3) -> Option<f64> {
+        match &self.pieces[side] {
+            Piece::Flat(_) => {
+                let flat = self.flat(side)?;
+                flat.is_under(p).then(|| flat.height(p))
+            }
+            Piece::Line(line) => {
+                let outward = self.outward(side);
+                let height = line.exit(p, outward)?;
+                let at = p + outward * height;
+                let [low, high] = line.ends.map(|end| line.surface.axis.dot(end - at));
+                let is_between = low.min(high) <= ON_OUTLINE * self.size()
+                    && low.max(high) >= -ON_OUTLINE * self.size();
+                is_between.then(|| self.normal().dot(at - p))
+            }
+            Piece::Point(core) => {
+                let height = self.normal().dot(*core - p);
+                let aside = (*core - p - self.normal() * height).length();
+                (aside <= ON_OUTLINE * self.size()).then(|| height + self.border_heights()[side])
+            }
+        }
+    }
+
+    pub(super) fn push(&mut self, candidate: PiecePoint, heights: [f64; 2]) {
+        let place = ContactPlace {
+            on_1: candidate.at + self.normal() * heights[0],
+            on_2: candidate.at + self.normal() * heights[1],
+            distance: heights[1] - heights[0],
+            features: candidate.spots.map(Spot::feature),
+        };
+        if place.distance.is_finite() {
+            self.places.push(place);
+        }
+    }
+
+    /// A candidate on a piece, if it is over the other one.
+    pub(super) fn push_over(&mut self, side: usize, candidate: PiecePoint) {
+        if let Some(height) = self.height_over(1 - side, candidate.at) {
+            self.push(candidate, by_side(side, [0.0, height]));
+        }
+    }
+}
