@@ -175,9 +175,7 @@ impl ExpandingPolytope {
     }
 
     pub fn corners(&self, face: u32) -> [CsoVertex; 3] {
-        self.faces[face as usize]
-            .corners
-            .map(|v| self.vertices[v as usize])
+        self.faces[face as usize].corners.map(|v| *self.vertex(v))
     }
 
     /// Whether the polytope already has this vertex.
@@ -288,7 +286,7 @@ impl ExpandingPolytope {
     }
 
     fn add(&mut self, corners: [u32; 3], across: [FaceEdge; 3]) {
-        let [a, b, c] = corners.map(|v| self.vertices[v as usize].w);
+        let [a, b, c] = corners.map(|v| self.vertex(v).w);
         let area = (b - a).cross(c - a);
         let squared = area.length_squared();
         // A face without area has no plane. It stays in the surface, but is never searched.

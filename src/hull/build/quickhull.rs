@@ -17,7 +17,7 @@ use crate::hull::HullError;
 /// If the points lie in a plane, or more of them are corners than a hull may have.
 pub(super) fn convex_hull(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
     let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
-    let mut surface = Surface::tetrahedron(&exact)?;
+    let mut surface = GrowingHull::tetrahedron(&exact)?;
     surface.grow()?;
     let bends = surface.bends();
     // At a point in a flat side or on a straight edge, fewer than three edges bend.
@@ -67,7 +67,7 @@ struct HorizonEdge {
     beyond: u32,
 }
 
-struct Surface<'a> {
+struct GrowingHull<'a> {
     points: &'a [DVec3],
     facets: Vec<HullFacet>,
     vertex_count: usize,
@@ -75,7 +75,7 @@ struct Surface<'a> {
     starting_at: Vec<u32>,
 }
 
-impl<'a> Surface<'a> {
+impl<'a> GrowingHull<'a> {
     fn tetrahedron(points: &'a [DVec3]) -> Result<Self, HullError> {
         let farthest = |measure: &dyn Fn(DVec3) -> f64| {
             let measured = (0..points.len()).map(|i| (measure(points[i]), i));
@@ -113,16 +113,25 @@ impl<'a> Surface<'a> {
     }
 
     fn height(&self, facet: u32, point: u32) -> f64 {
-        let vertices = self.facets[facet as usize].vertices;
-        height_over(
-            vertices.map(|v| self.points[v as usize]),
-            self.points[point as usize],
-        )
+        let at = |v: u32| self.points[v as usize];
+        height_over(self.facet(facet).vertices.map(at), at(point))
+    }
+
+    fn facet_count(&self) -> u32 {
+        self.facets.len() as u32
+    }
+
+    fn facet(&self, id: u32) -> &HullFacet {
+        &self.facets[id as usize]
+    }
+
+    fn facet_mut(&mut self, id: u32) -> &mut HullFacet {
+        &mut self.facets[id as usize]
     }
 
     /// Assigns a point to the first facet, from `first` on, that it is above, if there is one.
     fn hand_over(&mut self, point: u32, first: u32) {
-        for facet in first..self.facets.len() as u32 {
+        for facet in first..self.facet_count() {
             let height = self.height(facet, point);
             if height > 0.0 {
                 let facet = &mut self.facets[facet as usize];
@@ -152,7 +161,7 @@ impl<'a> Surface<'a> {
                 self.remove_seen(eye, facet as u32, &mut horizon, &mut seen);
                 let first = self.close(eye, &horizon);
                 for &facet in &seen {
-                    unassigned.append(&mut self.facets[facet as usize].above);
+                    unassigned.append(&mut self.facet_mut(facet).above);
                 }
                 for point in unassigned.drain(..) {
                     self.hand_over(point, first);
@@ -175,19 +184,19 @@ impl<'a> Surface<'a> {
         horizon.clear();
         seen.clear();
         seen.push(facet);
-        self.facets[facet as usize].is_removed = true;
+        self.facet_mut(facet).is_removed = true;
         let mut next = 0;
         while let Some(&facet) = seen.get(next) {
             let HullFacet {
                 vertices, beyond, ..
-            } = self.facets[facet as usize];
+            } = *self.facet(facet);
             for side in 0..3 {
                 let other = beyond[side];
-                if self.facets[other as usize].is_removed {
+                if self.facet(other).is_removed {
                     continue;
                 }
                 if self.height(other, eye) > 0.0 {
-                    self.facets[other as usize].is_removed = true;
+                    self.facet_mut(other).is_removed = true;
                     seen.push(other);
                 } else {
                     horizon.push(HorizonEdge {
@@ -203,19 +212,19 @@ impl<'a> Surface<'a> {
 
     /// Adds facets between a point and the horizon. Returns the first.
     fn close(&mut self, eye: u32, horizon: &[HorizonEdge]) -> u32 {
-        let first = self.facets.len() as u32;
+        let first = self.facet_count();
         for (id, edge) in (first..).zip(horizon) {
             let facet = HullFacet::new([edge.from, edge.to, eye], [edge.beyond, 0, 0]);
             self.facets.push(facet);
             self.starting_at[edge.from as usize] = id;
-            let other = &mut self.facets[edge.beyond as usize];
+            let other = self.facet_mut(edge.beyond);
             let side = other.vertices.iter().position(|&v| v == edge.to);
             other.beyond[side.expect("it has this edge")] = id;
         }
         for (id, edge) in (first..).zip(horizon) {
             let next = self.starting_at[edge.to as usize];
-            self.facets[id as usize].beyond[1] = next;
-            self.facets[next as usize].beyond[2] = id;
+            self.facet_mut(id).beyond[1] = next;
+            self.facet_mut(next).beyond[2] = id;
         }
         first
     }
@@ -228,7 +237,7 @@ impl<'a> Surface<'a> {
             let each_once = |&(_, &other): &(usize, &u32)| !facet.is_removed && id < other;
             for (side, &other) in others.filter(each_once) {
                 let ends = [facet.vertices[side], facet.vertices[(side + 1) % 3]];
-                let across = self.facets[other as usize].vertices;
+                let across = self.facet(other).vertices;
                 let third = across.into_iter().find(|v| !ends.contains(v));
                 if self.height(id, third.expect("it shares only two")) < 0.0 {
                     ends.iter().for_each(|&v| bends[v as usize] += 1);

@@ -68,7 +68,7 @@ impl CoplanarRegions {
     fn add_single(&mut self) {
         for t in 0..self.of.len() {
             if self.of[t] == FREE {
-                self.of[t] = self.len() as u32;
+                self.of[t] = self.next_id();
                 self.triangles.push(t as u32);
                 self.first.push(self.triangles.len());
             }
@@ -83,7 +83,7 @@ impl CoplanarRegions {
         seed: u32,
         joins: impl Fn(usize) -> bool,
     ) {
-        let region = self.len() as u32;
+        let region = self.next_id();
         let mut at = self.triangles.len();
         self.of[seed as usize] = region;
         self.triangles.push(seed);
@@ -117,6 +117,11 @@ impl CoplanarRegions {
 
     pub fn len(&self) -> usize {
         self.first.len() - 1
+    }
+
+    /// The number of the region that is added next.
+    fn next_id(&self) -> u32 {
+        self.len() as u32
     }
 
     pub fn triangles(&self, region: usize) -> &[u32] {

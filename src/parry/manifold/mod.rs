@@ -138,9 +138,8 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
         };
         let stage = query.run_into(Full, &mut sink).ok_or(Unsupported)?;
         if let (Some(apart), Some(separation)) = (apart, sink.still_apart(stage, &cso)) {
-            workspace
-                .apart_cache
-                .store(apart, separation, cso.size(), frame.lever(&cso));
+            let proofs = &mut workspace.apart_cache;
+            proofs.store(apart, separation, cso.size(), frame.lever(&cso));
         }
         Ok(sink.stage(stage))
     }
