@@ -173,21 +173,25 @@ impl Question<'_> {
 
     /// How far the shapes are apart along the normal of a manifold. Without points it keeps an axis
     /// from whichever shape was the first to the kernels, in the frame of the larger one: what any of
-    /// these readings separates is apart. Where the balls are apart it keeps none; parry says how far.
+    /// these readings separates is apart. The axis may be old, or zero, where the balls are apart:
+    /// then parry says how far.
     fn separation_shown(&self, manifold: &ContactManifold) -> Option<f64> {
         let normal = manifold.local_n1;
-        if normal == Vector::ZERO {
-            let [shape_1, shape_2] = self.shapes;
-            let distance = DefaultQueryDispatcher.distance(&self.pos12, shape_1, shape_2);
-            return Some(distance.ok()?.distance.into());
-        }
-        let separation = self.separation(normal)?;
         if !manifold.points.is_empty() {
-            return Some(separation);
+            return self.separation(normal);
         }
         let seen_from_2 = self.pos12.rotation * normal;
-        let readings = [-normal, seen_from_2, -seen_from_2].map(|axis| self.separation(axis));
-        Some(readings.into_iter().flatten().fold(separation, f64::max))
+        let readings = [normal, -normal, seen_from_2, -seen_from_2];
+        let separations = readings
+            .into_iter()
+            .filter_map(|axis| self.separation(axis));
+        let shown = separations.fold(f64::NEG_INFINITY, f64::max);
+        if shown >= f64::from(self.prediction) {
+            return Some(shown);
+        }
+        let [shape_1, shape_2] = self.shapes;
+        let distance = DefaultQueryDispatcher.distance(&self.pos12, shape_1, shape_2);
+        Some(distance.ok()?.distance.into())
     }
 
     fn size(&self) -> f64 {
