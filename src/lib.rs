@@ -90,6 +90,7 @@ pub mod query;
 mod ray_cast;
 mod simd;
 mod simplex;
+mod slot;
 mod stats;
 mod support;
 mod tolerance;

@@ -11,21 +11,30 @@ use crate::support::Cso;
 use crate::tolerance::SAME_NORMAL;
 
 impl Patch {
-    /// Whether the cores' signed distance is no more than `separation`, which their support planes along the
-    /// normal show, up to `tolerance`.
+    /// The place with the narrowest gap, if the cores' signed distance is no more than `separation`, which their
+    /// support planes along the normal show, up to `tolerance`.
     ///
     /// Two points of cores that are apart bound their distance. A depth is bounded by a ball in the
     /// difference: under a disc that is in it, or the sum of balls inside both cores that touch their
     /// surfaces in a place of contact.
-    pub(super) fn proves<A: Body, B: Body>(
+    pub(super) fn proved<A: Body, B: Body>(
         &self,
         cso: &Cso<'_, A, B>,
         separation: f64,
         tolerance: f64,
+    ) -> Option<&ContactPlace> {
+        let nearest = self.deepest()?;
+        self.proves(cso, nearest, separation, tolerance)
+            .then_some(nearest)
+    }
+
+    fn proves<A: Body, B: Body>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        nearest: &ContactPlace,
+        separation: f64,
+        tolerance: f64,
     ) -> bool {
-        let Some(nearest) = self.deepest() else {
-            return false;
-        };
         let wanted = separation - self.borders();
         if nearest.distance - wanted > tolerance {
             return false;

@@ -187,20 +187,19 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
             .filter(|last| last.are_within(found.normal, drift))
         {
             patch.add_guess(last.middle_of_deepest(found.normal, FLUSH_TIE * tolerance));
-            if patch.proves(self.cso, found.distance, tolerance) {
-                return patch.deepest().map(|place| near(place.on_1 + moved));
+            if let Some(place) = patch.proved(self.cso, found.distance, tolerance) {
+                return Some(near(place.on_1 + moved));
             }
         }
         patch.find_extremes();
-        if patch.proves(self.cso, found.distance, tolerance) {
-            return patch.deepest().map(|place| near(place.on_1 + moved));
+        if let Some(place) = patch.proved(self.cso, found.distance, tolerance) {
+            return Some(near(place.on_1 + moved));
         }
         if let Some(on_1) = rim_edge::proved_crossing(self.cso, found, tolerance) {
             return Some(near(on_1 + moved));
         }
         patch.complete(self.cso, self.border_radii);
-        let is_proved = patch.proves(self.cso, found.distance, tolerance);
-        let deepest = patch.deepest().filter(|_| is_proved)?;
+        let deepest = patch.proved(self.cso, found.distance, tolerance)?;
         Some(near(deepest.on_1))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::cached_polytope::CachedPolytope;
 use super::polytope::EpaScratch;
+use crate::slot::slot;
 use crate::stats::Cost;
 use crate::support::{Cso, Polytope, Support};
 
@@ -76,8 +77,6 @@ impl PolytopeCache {
     }
 
     fn slot(&mut self, key: u64) -> &mut CacheSlot {
-        // Fibonacci hashing: the highest bits depend on all bits of the key.
-        let hash = key.wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        &mut self.0[(hash >> (u64::BITS - SLOT_BITS)) as usize]
+        &mut self.0[slot(key, SLOT_BITS)]
     }
 }

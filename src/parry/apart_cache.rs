@@ -13,6 +13,7 @@ use glam::{DVec3, Quat, Vec3};
 use parry3d::math::Pose;
 
 use crate::ids::ShapeId;
+use crate::slot::slot;
 use crate::stats::Stage;
 use crate::tolerance::{NEARLY_UNIT, PROOF_MARGIN};
 
@@ -69,7 +70,7 @@ impl ApartCache {
     /// Whether a pair is certainly farther apart than `max_distance`.
     #[inline]
     pub fn proves(&self, pair: ApartPair<'_>, max_distance: f64) -> bool {
-        let proof = &self.0[slot(pair.key)];
+        let proof = &self.0[slot(pair.key, SLOT_BITS)];
         proof.shapes == pair.shapes.map(Some)
             && proof.axis == pair.axis
             && proof.separation_at(pair.pose) > max_distance
@@ -80,7 +81,7 @@ impl ApartCache {
     #[inline(never)]
     pub fn store(&mut self, pair: ApartPair<'_>, separation: f64, size: f64, lever: f64) {
         let margin = (1.0 - PROOF_MARGIN) * (size + separation.abs());
-        self.0[slot(pair.key)] = Proof {
+        self.0[slot(pair.key, SLOT_BITS)] = Proof {
             rotation: pair.pose.rotation,
             shapes: pair.shapes.map(Some),
             translation: pair.pose.translation,
@@ -115,10 +116,4 @@ fn exact_difference(a: Vec3, b: Vec3) -> DVec3 {
 #[inline]
 fn is_nearly_unit(rotation: Quat) -> bool {
     (rotation.length_squared() - 1.0).abs() < NEARLY_UNIT as f32
-}
-
-/// Fibonacci hashing: the highest bits depend on all bits of the key.
-#[inline]
-fn slot(key: u64) -> usize {
-    (key.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> (u64::BITS - SLOT_BITS)) as usize
 }

@@ -4,6 +4,8 @@
 use glam::{DVec3, Vec3};
 use parry3d::shape::ConvexPolyhedron;
 
+use crate::tuning::SEEMS_FLAT;
+
 /// The triangles of a polyhedron.
 pub(super) struct FaceTriangles {
     /// Each from its lowest corner, in the order of their corners.
@@ -65,7 +67,7 @@ fn seems_flat(points: &[Vec3], corners: &[u32]) -> bool {
     let [a, b, c] = [1, 2, 3].map(|i| at(i) - at(0));
     let normal: DVec3 = a.cross(b);
     let height = normal.dot(c);
-    height * height <= 1e-10 * normal.length_squared() * b.length_squared()
+    height * height <= SEEMS_FLAT * SEEMS_FLAT * normal.length_squared() * b.length_squared()
 }
 
 /// The edges within faces of more than three corners.

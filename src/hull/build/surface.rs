@@ -65,16 +65,9 @@ impl<'a> Surface<'a> {
     }
 
     pub fn into_hull(self) -> Result<Hull, HullError> {
-        let Self {
-            points,
-            exact,
-            mesh,
-            areas,
-            bends,
-            center,
-            radius,
-        } = self;
-        let (mut faces, merged) = Faces::new(&exact, &mesh, &areas, &bends.is_steep, radius);
+        let (points, mesh, bends) = (self.points, self.mesh, self.bends);
+        let (exact, center, radius) = (self.exact, self.center, self.radius);
+        let (mut faces, merged) = Faces::new(&exact, &mesh, &self.areas, &bends.is_steep, radius);
         let mut graph = EdgeGraph::new(&mesh, &merged.face_of);
         let climb = HillClimb {
             points: &points,
