@@ -106,8 +106,8 @@ struct Settled {
 /// `None` where nothing settles.
 fn settled(scene: Scene) -> Option<Settled> {
     let (overlap, height) = match scene {
-        // The row is still falling.
-        Scene::Drum | Scene::Dominoes => return None,
+        // The row is still falling, and so are the last bodies of a burst. New hulls overlap as they come.
+        Scene::Drum | Scene::Dominoes | Scene::Bursts | Scene::Reshaped => return None,
         // Towers that stand: they start at 2.27 m and 0.49 m.
         Scene::Stack => (0.05, 2.2),
         // The solver's soft contacts give way under sixteen coins by a few millimetres each.

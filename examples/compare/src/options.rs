@@ -19,7 +19,7 @@ const SECONDS_UNTIL_ASLEEP: u32 = 12;
 pub struct Options {
     /// What is in the world: drum, pile, stack, coins, wall, dominoes, spin, top, rolling, asleep,
     /// cuboids, balls, mixed, compound, trimesh, heightfield, rocks, stones, dice, pebbles, cubes,
-    /// plates, needles, breach or rubble
+    /// plates, needles, breach, rubble, reshaped or bursts
     #[arg(long, default_value_t = Scene::Drum)]
     pub scene: Scene,
 
@@ -37,7 +37,7 @@ pub struct Options {
     bodies: Option<u32>,
 
     /// The largest extent of the largest body, in metres [default: 5 to 40 cm for rocks, stones,
-    /// dice, pebbles, cubes, plates, needles, breach and rubble; about a metre elsewhere]
+    /// dice, pebbles, cubes, plates, needles, breach, rubble and bursts; about a metre elsewhere]
     #[arg(long, value_parser = positive)]
     size: Option<Real>,
 

@@ -111,6 +111,8 @@ fn figures(scene: Scene, runs: &[Run]) -> Vec<Figure> {
         time("narrow phase", |frame| frame.times.narrow_phase),
         time("solver", |frame| frame.times.solver),
         time("ccd", |frame| frame.times.ccd),
+        Figure::all_steps("all steps", runs, |steps| steps.sum()),
+        Figure::all_steps("worst step", runs, |steps| steps.fold(0.0, f64::max)),
         other("pairs", "", |side| per_frame(side, |f| f.pairs as f64)),
         other("touching pairs", "", |side| {
             per_frame(side, |f| f.touching as f64)
@@ -154,13 +156,28 @@ fn figures(scene: Scene, runs: &[Run]) -> Vec<Figure> {
 
 impl Figure {
     fn time(name: &'static str, runs: &[Run], of: fn(&Frame) -> f64) -> Self {
+        Self::with_ratio(name, runs, |side| per_frame(side, of))
+    }
+
+    /// A figure of the times of all whole steps, counted or not.
+    fn all_steps(
+        name: &'static str,
+        runs: &[Run],
+        of: fn(&mut dyn Iterator<Item = f64>) -> f64,
+    ) -> Self {
+        Self::with_ratio(name, runs, |side| {
+            of(&mut side.frames.iter().map(|frame| frame.times.step))
+        })
+    }
+
+    fn with_ratio(name: &'static str, runs: &[Run], of: impl Fn(&Side) -> f64) -> Self {
         let ratios = runs.iter().filter_map(|run| {
-            let ours = per_frame(&run.ours, of);
-            (ours > 0.0).then(|| per_frame(&run.default, of) / ours)
+            let ours = of(&run.ours);
+            (ours > 0.0).then(|| of(&run.default) / ours)
         });
         Self {
             ratio: Some(quantile(ratios.collect(), 0.5)).filter(|ratio| *ratio > 0.0),
-            ..Self::other(name, "ms", runs, |side| per_frame(side, of))
+            ..Self::other(name, "ms", runs, of)
         }
     }
 

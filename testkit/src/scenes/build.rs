@@ -66,7 +66,9 @@ pub fn fill(
         | Scene::Pebbles
         | Scene::Cubes
         | Scene::Plates
-        | Scene::Needles => filler.pile(),
+        | Scene::Needles
+        | Scene::Reshaped
+        | Scene::Bursts => filler.pile(),
     }
     Ok(())
 }
@@ -126,7 +128,9 @@ fn shapes(
         | Scene::Asleep
         | Scene::Trimesh
         | Scene::Heightfield
-        | Scene::Rubble => hulls::make(&params.hulls, count, random)?,
+        | Scene::Rubble
+        | Scene::Reshaped
+        | Scene::Bursts => hulls::make(&params.hulls, count, random)?,
     })
 }
 

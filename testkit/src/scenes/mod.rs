@@ -8,6 +8,7 @@ mod figures;
 mod filler;
 mod flat;
 pub mod hulls;
+mod renewal;
 mod standing;
 mod world;
 
@@ -20,6 +21,7 @@ use rapier3d::prelude::{Real, SharedShape};
 
 pub use curved::CurvedScene;
 pub use figures::{Figure, Watched};
+use renewal::Renewal;
 pub use world::World;
 
 /// What happens in a world.
@@ -75,11 +77,15 @@ pub enum Scene {
     Breach,
     /// Hulls dropped on a heap of boxes that is one compound.
     Rubble,
+    /// A pile in which every body gets a new hull before each step.
+    Reshaped,
+    /// A pile in which bodies with new hulls replace the oldest third every half a second.
+    Bursts,
 }
 
 impl Scene {
     /// Every scene.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 27] = [
         Self::Drum,
         Self::Pile,
         Self::Stack,
@@ -105,6 +111,8 @@ impl Scene {
         Self::Needles,
         Self::Breach,
         Self::Rubble,
+        Self::Reshaped,
+        Self::Bursts,
     ];
 
     /// The name on the command line and in tables.
@@ -135,6 +143,8 @@ impl Scene {
             Self::Needles => "needles",
             Self::Breach => "breach",
             Self::Rubble => "rubble",
+            Self::Reshaped => "reshaped",
+            Self::Bursts => "bursts",
         }
     }
 
@@ -150,7 +160,9 @@ impl Scene {
             | Self::Cubes
             | Self::Plates
             | Self::Needles
-            | Self::Rubble => 300,
+            | Self::Rubble
+            | Self::Bursts => 300,
+            Self::Reshaped => 100,
             Self::Spin | Self::Top => 16,
             Self::Dominoes | Self::Rolling => 64,
             Self::Stack | Self::Wall => 128,
@@ -176,6 +188,7 @@ impl Scene {
             Self::Cubes => Some(0.1),
             Self::Plates | Self::Needles => Some(0.4),
             Self::Breach => Some(0.25),
+            Self::Bursts => Some(0.2),
             _ => None,
         }
     }
@@ -202,8 +215,15 @@ impl Scene {
             | Self::Compound
             | Self::Trimesh
             | Self::Heightfield
-            | Self::Rubble => Hulls::Any,
+            | Self::Rubble
+            | Self::Reshaped
+            | Self::Bursts => Hulls::Any,
         }
+    }
+
+    /// Whether hulls come into being while it runs.
+    pub const fn renews(self) -> bool {
+        matches!(self, Self::Reshaped | Self::Bursts)
     }
 
     /// Whether its bodies are to stay upright.
@@ -342,11 +362,14 @@ pub fn build(
     params: &SceneParams,
     dispatcher: Option<IsaGjkDispatcher>,
 ) -> Result<World, String> {
-    let hull_shape = params.hull_shape && dispatcher.is_some();
+    let ours = dispatcher.is_some();
     let mut world = World::new(dispatcher, params.unchanged_shapes);
     world.physics.integration_parameters.contact_recycling = params.recycling;
     world.physics.integration_parameters.dt = 1.0 / params.hz as Real;
-    build::fill(&mut world, scene, params, hull_shape)?;
+    build::fill(&mut world, scene, params, params.hull_shape && ours)?;
+    if scene.renews() {
+        world.renew(Renewal::new(scene, params, &world.physics, ours));
+    }
     if let Some(friction) = params.friction {
         for (_, collider) in world.physics.colliders.iter_mut() {
             collider.set_friction(friction);

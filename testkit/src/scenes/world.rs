@@ -3,6 +3,8 @@
 use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::*;
 
+use super::renewal::Renewal;
+
 /// Radians per second at which a drum turns.
 const DRUM_SPEED: Real = 0.5;
 
@@ -13,6 +15,7 @@ pub struct World {
     /// Told before each step that no shape changes in it.
     told: Option<IsaGjkDispatcher>,
     drum: Option<RigidBodyHandle>,
+    renewal: Option<Renewal>,
     steps: u32,
 }
 
@@ -31,6 +34,7 @@ impl World {
             },
             told,
             drum: None,
+            renewal: None,
             steps: 0,
         }
     }
@@ -40,9 +44,17 @@ impl World {
         self.drum = Some(drum);
     }
 
+    /// Makes hulls come into being from now on.
+    pub(super) fn renew(&mut self, renewal: Renewal) {
+        self.renewal = Some(renewal);
+    }
+
     /// One frame.
     pub fn step(&mut self) {
         self.steps += 1;
+        if let Some(renewal) = &mut self.renewal {
+            renewal.renew(&mut self.physics, self.steps);
+        }
         if let Some(drum) = self.drum {
             // From the count of steps, so that rounding does not add up over a long run.
             let dt = self.physics.integration_parameters.dt;
@@ -97,7 +109,7 @@ impl World {
         hash
     }
 
-    /// The bodies that move freely, in the order in which they were inserted.
+    /// The bodies that move freely, in the order in which they were inserted, if none was removed.
     pub fn dynamic_bodies(&self) -> impl Iterator<Item = &RigidBody> {
         let bodies = self.physics.bodies.iter().map(|(_, body)| body);
         bodies.filter(|body| body.is_dynamic())
