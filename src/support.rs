@@ -116,6 +116,13 @@ pub trait Polytope: Support {
         [corner(a), corner(b), corner(c), corner(d)]
     }
 
+    /// How far inside a face a point of its plane is, negative outside, if this costs less than a look at its
+    /// corners.
+    fn face_inset(&self, face: FaceId, p: DVec3) -> Option<f64> {
+        let _ = (face, p);
+        None
+    }
+
     /// The corners of a face, counter-clockwise seen from outside.
     fn face_points(&self, face: FaceId) -> impl FacePoints {
         (0..self.face_len(face)).map(move |i| self.vertex(self.face_vertex(face, i)))

@@ -77,13 +77,9 @@ pub(crate) const SHORT_LINE: f64 = 0.05;
 /// well as the ends of their lens, which turn with the shift.
 pub(crate) const SMALL_SHIFT: f64 = 0.01;
 
-/// The first step of a search along the normals of an edge or a side, as an angle. A normal of the frame
-/// before is hardly farther.
-pub(crate) const FIRST_STEP: f64 = 0.02;
-
 /// Between the bounds of a coarse search, as a share of the smaller radius: near enough to know which
-/// pieces of surface are in contact. They give the answer then.
-pub(crate) const COARSE_GAP: f64 = 0.02;
+/// pieces of surface are in contact. They give the answer then. A tenth and ten times of it serve as well.
+pub(crate) const COARSE_GAP: f64 = 0.002;
 
 /// GJK's gap in a cast of turning curved shapes: a part of the gap at which it ends, which is then known well
 /// enough.
@@ -95,10 +91,6 @@ pub(crate) const ROUGH_GAP: f64 = 0.01;
 
 /// Of a gap: when the proof of a normal leaves less of it, such a cast goes on from there with a new normal.
 pub(crate) const USED_UP: f64 = 0.05;
-
-/// An edge or a side is looked at if the sine of its angle to the normal at hand is off by less than this: the
-/// normals of coarse searches are off by up to a fifth.
-pub(crate) const NEAR_RULING: f64 = 0.3;
 
 /// From one frame to the next a normal turns by less than this angle, mostly: pieces of surface that it misses by
 /// more are looked at later.

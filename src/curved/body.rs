@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-use super::piece::Piece;
+use super::piece::{FlatSide, Piece};
+use crate::stats::Cost;
 use crate::support::{Support, VertexId};
 
 /// What a part of a surface demands of its outward unit normal: `axis · normal = sine`. An edge has normals
@@ -28,8 +29,14 @@ pub struct CircularEdge {
 
 /// A convex shape with pieces of surface. Everything is in its own frame.
 pub trait Body: Support {
-    /// The normal of the flat side at `vertex`, extreme along `dir`, that looks most along `dir`.
-    fn flat_normal(&self, dir: DVec3, vertex: VertexId) -> Option<DVec3>;
+    /// The flat side at `vertex`, extreme along `dir`, that looks most along `dir`.
+    fn flat(&self, dir: DVec3, vertex: VertexId) -> Option<FlatSide>;
+
+    /// How far inside a flat side a point of its plane is; not more than zero outside.
+    fn inset(&self, flat: &FlatSide, p: DVec3) -> f64;
+
+    /// A point of the flat or ruled side that looks about along `dir`, near another point.
+    fn point_on_side(&self, dir: DVec3, near: DVec3, cost: &mut Cost) -> Option<DVec3>;
 
     /// The edges at `vertex`, extreme along `dir`, and the ruled sides.
     fn rulings(&self, dir: DVec3, vertex: VertexId) -> impl Iterator<Item = Ruling>;

@@ -5,7 +5,9 @@ use glam::DVec3;
 use super::body::{Body, CircularEdge, Ruling};
 use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall};
 use crate::primitive::Cone;
+use crate::stats::Cost;
 use crate::support::VertexId;
+use crate::tuning::SMALL_TURN;
 
 /// The sine and the cosine of the angle between the side's normals and the base.
 fn lean(cone: &Cone) -> [f64; 2] {
@@ -14,9 +16,43 @@ fn lean(cone: &Cone) -> [f64; 2] {
     [slope / length, 1.0 / length]
 }
 
+impl Cone {
+    /// The base, moved outwards by the width of the border.
+    fn base(&self, border: f64) -> FlatSide {
+        let offset = self.half_height() + border;
+        FlatSide {
+            normal: DVec3::NEG_Y,
+            offset,
+            outline: Outline::Disc {
+                center: DVec3::NEG_Y * offset,
+                radius: self.rim_radius(),
+            },
+        }
+    }
+}
+
 impl Body for Cone {
-    fn flat_normal(&self, dir: DVec3, _: VertexId) -> Option<DVec3> {
-        (dir.y < 0.0).then_some(DVec3::NEG_Y)
+    fn flat(&self, dir: DVec3, _: VertexId) -> Option<FlatSide> {
+        (dir.y < 0.0).then(|| self.base(0.0))
+    }
+
+    fn inset(&self, _: &FlatSide, p: DVec3) -> f64 {
+        self.rim_radius() - p.x.hypot(p.z)
+    }
+
+    fn point_on_side(&self, dir: DVec3, near: DVec3, _: &mut Cost) -> Option<DVec3> {
+        let (half_height, radius) = (self.half_height(), self.rim_radius());
+        let (across, from_axis) = (dir.with_y(0.0), near.with_y(0.0));
+        let [squared_sine, squared] = [across, from_axis].map(DVec3::length_squared);
+        if dir.y < 0.0 && squared_sine < SMALL_TURN * SMALL_TURN {
+            let is_on_base = squared <= radius * radius;
+            return is_on_base.then(|| from_axis.with_y(-half_height));
+        }
+        let height = near.y.clamp(-half_height, half_height);
+        let around = 0.5 * radius * (1.0 - height / half_height);
+        let [sine, _] = lean(self);
+        let is_along = (dir.y - sine).abs() < SMALL_TURN;
+        is_along.then(|| (across * (around / squared_sine.sqrt())).with_y(height))
     }
 
     fn rulings(&self, _: DVec3, _: VertexId) -> impl Iterator<Item = Ruling> {
@@ -44,15 +80,7 @@ impl Body for Cone {
         let (half_height, radius) = (self.half_height(), self.rim_radius());
         let [sine, cosine] = lean(self);
         if -dir.y >= cosine * dir.x.hypot(dir.z) + sine * dir.y {
-            let offset = half_height + border;
-            return Piece::Flat(FlatSide {
-                normal: DVec3::NEG_Y,
-                offset,
-                outline: Outline::Disc {
-                    center: DVec3::NEG_Y * offset,
-                    radius,
-                },
-            });
+            return Piece::Flat(self.base(border));
         }
         let around = DVec3::new(dir.x, 0.0, dir.z).normalize_or(DVec3::X);
         let moved = (around * cosine + DVec3::Y * sine) * border;

@@ -5,11 +5,46 @@ use glam::DVec3;
 use super::body::{Body, CircularEdge, Ruling};
 use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall};
 use crate::primitive::Cylinder;
+use crate::stats::Cost;
 use crate::support::VertexId;
+use crate::tuning::SMALL_TURN;
+
+impl Cylinder {
+    /// The cap that looks along `dir`, moved outwards by the width of the border.
+    fn cap(&self, dir: DVec3, border: f64) -> FlatSide {
+        let normal = DVec3::new(0.0, 1_f64.copysign(dir.y), 0.0);
+        let offset = self.half_height() + border;
+        FlatSide {
+            normal,
+            offset,
+            outline: Outline::Disc {
+                center: normal * offset,
+                radius: self.rim_radius(),
+            },
+        }
+    }
+}
 
 impl Body for Cylinder {
-    fn flat_normal(&self, dir: DVec3, _: VertexId) -> Option<DVec3> {
-        Some(DVec3::new(0.0, 1_f64.copysign(dir.y), 0.0))
+    fn flat(&self, dir: DVec3, _: VertexId) -> Option<FlatSide> {
+        Some(self.cap(dir, 0.0))
+    }
+
+    fn inset(&self, _: &FlatSide, p: DVec3) -> f64 {
+        self.rim_radius() - p.x.hypot(p.z)
+    }
+
+    fn point_on_side(&self, dir: DVec3, near: DVec3, _: &mut Cost) -> Option<DVec3> {
+        let (half_height, radius) = (self.half_height(), self.rim_radius());
+        let (across, from_axis) = (dir.with_y(0.0), near.with_y(0.0));
+        let [squared_sine, squared] = [across, from_axis].map(DVec3::length_squared);
+        if squared_sine < SMALL_TURN * SMALL_TURN {
+            let is_on_cap = squared <= radius * radius;
+            return is_on_cap.then(|| from_axis.with_y(half_height.copysign(dir.y)));
+        }
+        let height = near.y.clamp(-half_height, half_height);
+        let is_across = dir.y.abs() < SMALL_TURN;
+        is_across.then(|| (across * (radius / squared_sine.sqrt())).with_y(height))
     }
 
     fn rulings(&self, _: DVec3, _: VertexId) -> impl Iterator<Item = Ruling> {
@@ -34,16 +69,7 @@ impl Body for Cylinder {
     fn piece(&self, dir: DVec3, _: VertexId, border: f64, _: &mut Vec<(DVec3, VertexId)>) -> Piece {
         let (half_height, radius) = (self.half_height(), self.rim_radius());
         if dir.y.abs() >= dir.x.hypot(dir.z) {
-            let normal = DVec3::new(0.0, 1_f64.copysign(dir.y), 0.0);
-            let offset = half_height + border;
-            return Piece::Flat(FlatSide {
-                normal,
-                offset,
-                outline: Outline::Disc {
-                    center: normal * offset,
-                    radius,
-                },
-            });
+            return Piece::Flat(self.cap(dir, border));
         }
         let outward = DVec3::new(dir.x, 0.0, dir.z).normalize_or(DVec3::X);
         let around = radius + border;

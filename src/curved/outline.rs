@@ -37,7 +37,7 @@ impl Flat<'_> {
         let p = self.project(p);
         let inset = match self.side.outline {
             Outline::Disc { center, radius } => radius * (1.0 + ON_OUTLINE) - p.distance(center),
-            Outline::Polygon => {
+            Outline::Polygon(_) => {
                 let mut least = f64::INFINITY;
                 for ([from, inward], length) in self.sides() {
                     let slack = ON_OUTLINE * (length + (p - from).length());
@@ -70,7 +70,7 @@ impl Flat<'_> {
                 let [enter, leave] = circle_crossings(a - center, along, radius)?;
                 (low, high) = (low.max(enter), high.min(leave));
             }
-            Outline::Polygon => {
+            Outline::Polygon(_) => {
                 for ([from, inward], length) in self.sides() {
                     let slack = ON_OUTLINE * (length + (a - from).length());
                     let (height, rise) = (inward.dot(a - from) + slack, inward.dot(along));

@@ -8,6 +8,7 @@ use super::body::Body;
 use super::outline::Flat;
 use super::piece::{Outline, Piece};
 use super::place::Spot;
+use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, VertexId};
 use crate::tolerance::SAME_GAP;
 
@@ -36,6 +37,8 @@ pub struct Patch {
 enum Found {
     /// Only its normal is known.
     Normal,
+    /// The points that are extreme along that.
+    Extreme,
     /// The pieces without borders.
     Pieces,
     /// The extreme points that are over both pieces as well.
@@ -83,8 +86,14 @@ impl Patch {
         self.places.clear();
         self.normal = normal;
         self.extreme = *extreme;
-        self.found = Found::Normal;
+        self.found = Found::Extreme;
         self.guesses = 0;
+    }
+
+    /// Drops the last patch for that along `normal`, of which nothing else is known.
+    pub(super) fn aim_along(&mut self, normal: DVec3) {
+        self.normal = normal;
+        self.found = Found::Normal;
     }
 
     /// Finds the pieces of the cores.
@@ -108,15 +117,14 @@ impl Patch {
         self.found = Found::Extremes;
     }
 
-    /// Finds the places along `normal`, along which `extreme` is extreme.
+    /// Finds the places along `normal`.
     pub fn find<A: Body, B: Body>(
         &mut self,
         cso: &Cso<'_, A, B>,
         normal: DVec3,
-        extreme: &CsoVertex,
         border_radii: [f64; 2],
     ) {
-        self.aim(normal, extreme);
+        self.aim_along(normal);
         self.complete(cso, border_radii);
     }
 
@@ -127,6 +135,11 @@ impl Patch {
             return;
         }
         if self.found == Found::Normal {
+            let start = cso.start_vertices(self.normal);
+            let extreme = cso.support(self.normal, start, &mut Cost::default());
+            self.aim(self.normal, &extreme);
+        }
+        if self.found == Found::Extreme {
             self.find_cores(cso);
         }
         if self.found == Found::Pieces {
@@ -258,7 +271,7 @@ impl Patch {
             [Piece::Flat(a), Piece::Flat(b)] => {
                 let circles = [&a, &b].map(|flat| match flat.outline {
                     Outline::Disc { center, radius } => Some((center, radius)),
-                    Outline::Polygon => None,
+                    Outline::Polygon(_) => None,
                 });
                 match circles {
                     [Some(first), Some(second)] => self.add_two_discs([&a, &b], [first, second]),

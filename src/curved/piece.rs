@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::pose::RelativePose;
+use crate::support::FaceId;
 use crate::tolerance::{ON_OUTLINE, SAME_NORMAL};
 
 /// A piece of the surface of a shape, moved outwards by the width of its border.
@@ -37,8 +38,8 @@ pub enum Outline {
         /// Its radius.
         radius: f64,
     },
-    /// A polygon whose corners are kept beside the piece.
-    Polygon,
+    /// A face, whose corners are kept beside the piece.
+    Polygon(FaceId),
 }
 
 /// The line of a ruled surface that is extreme along the contact normal.
@@ -103,7 +104,7 @@ impl Piece {
                         center: pose.point_to_1(center),
                         radius,
                     },
-                    Outline::Polygon => Outline::Polygon,
+                    polygon @ Outline::Polygon(_) => polygon,
                 };
                 Self::Flat(FlatSide {
                     normal,

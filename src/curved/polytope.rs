@@ -4,13 +4,44 @@ use glam::DVec3;
 
 use super::body::{Body, CircularEdge, Ruling};
 use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall, across};
+use crate::query::inset;
+use crate::stats::Cost;
 use crate::support::{Polytope, VertexId};
+use crate::tolerance::KEPT_ANGLE_COS;
 use crate::tuning::EDGE_ON;
 
 impl<P: Polytope> Body for P {
-    fn flat_normal(&self, dir: DVec3, vertex: VertexId) -> Option<DVec3> {
-        let normal = self.face_normal(self.face_at_vertex(vertex, dir));
-        (normal != DVec3::ZERO).then_some(normal)
+    fn flat(&self, dir: DVec3, vertex: VertexId) -> Option<FlatSide> {
+        let face = self.face_at_vertex(vertex, dir);
+        let normal = self.face_normal(face);
+        (normal != DVec3::ZERO).then(|| FlatSide {
+            normal,
+            offset: self.face_offset(face),
+            outline: Outline::Polygon(face),
+        })
+    }
+
+    fn inset(&self, flat: &FlatSide, p: DVec3) -> f64 {
+        match flat.outline {
+            Outline::Polygon(face) => self
+                .face_inset(face, p)
+                .unwrap_or_else(|| inset(self, face, flat.normal, p, 0.0)),
+            Outline::Disc { .. } => 0.0,
+        }
+    }
+
+    fn point_on_side(&self, dir: DVec3, near: DVec3, cost: &mut Cost) -> Option<DVec3> {
+        let (from, vertex) = self.support(dir, self.start_vertex(dir), cost);
+        let face = self.face_at_vertex(vertex, dir);
+        if self.face_len(face) == 2 {
+            let along = self.vertex(self.face_vertex(face, 1 - vertex.index())) - from;
+            let share = along.dot(near - from) / along.length_squared();
+            return Some(from + along * share.clamp(0.0, 1.0));
+        }
+        let flat = self.flat(dir, vertex)?;
+        let p = near - flat.normal * (flat.normal.dot(near) - flat.offset);
+        let is_on_it = flat.normal.dot(dir) >= KEPT_ANGLE_COS && self.inset(&flat, p) > 0.0;
+        is_on_it.then_some(p)
     }
 
     fn rulings(&self, _: DVec3, vertex: VertexId) -> impl Iterator<Item = Ruling> {
@@ -63,7 +94,7 @@ impl<P: Polytope> Body for P {
                 Piece::Flat(FlatSide {
                     normal,
                     offset: self.face_offset(face) + border,
-                    outline: Outline::Polygon,
+                    outline: Outline::Polygon(face),
                 })
             }
         }

@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::body::Body;
 use super::patch::Patch;
 use super::rim_edge;
-use super::stationary::{self, Effort, NormalSeparation};
+use super::stationary::{self, NormalSeparation};
 use crate::epa::EpaScratch;
 use crate::gjk::SeparatingAxis;
 use crate::query::{LastContacts, Start};
@@ -23,6 +23,8 @@ pub struct CurvedScratch {
     pub patch: Patch,
     /// The expanding polytope.
     pub epa: EpaScratch,
+    /// Points of the difference where it begins.
+    pub(super) seeds: Vec<CsoVertex>,
 }
 
 /// What is known of a pair from the frame before.
@@ -32,8 +34,9 @@ pub enum Hint {
     None,
     /// The shapes were apart along this unit axis, at these vertices.
     Apart(DVec3, [VertexId; 2]),
-    /// They were in contact along this unit normal. The last is whether their cores overlapped.
-    Contact(DVec3, bool),
+    /// They were in contact along these unit normals, out of each shape in its frame. The last is whether their
+    /// cores overlapped.
+    Contact([DVec3; 2], bool),
 }
 
 /// The answer to a query about cores, in frame 1.
@@ -56,7 +59,7 @@ pub enum CurvedAnswer {
 
 /// Finds a normal that separates more than the one at hand, or as much.
 type FindNormal<A, B> =
-    fn(&Cso<'_, A, B>, &NormalSeparation, Effort, &mut Cost) -> Option<NormalSeparation>;
+    fn(&Cso<'_, A, B>, &NormalSeparation, &mut Cost) -> Option<NormalSeparation>;
 
 /// A query about two shapes, of which one is curved.
 pub struct CurvedQuery<'a, 'c, A, B> {
@@ -84,6 +87,11 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
             Hint::None => Start::Cold,
             _ => Start::Warm,
         };
+        if let Hint::Contact(normals, _) = hint
+            && let Some(answer) = self.on_flat_side(normals)
+        {
+            return Some((answer, Stage::Feature));
+        }
         let mut at = self.along_hint(hint);
         if at.distance <= self.max_distance && !matches!(hint, Hint::Contact(..)) {
             at = at.or(self.tilted(&at));
@@ -91,11 +99,11 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         if at.distance > self.max_distance {
             return Some((apart(&at), Stage::Axis));
         }
+        let is_deep = matches!(hint, Hint::Contact(_, true));
         let best = match self.stationary(&at) {
             ControlFlow::Break(answer) => return Some((answer, Stage::Feature)),
             ControlFlow::Continue(best) => best,
         };
-        let is_deep = matches!(hint, Hint::Contact(_, true));
         if !is_deep && let Some(found) = self.by_gjk(&at, start) {
             return Some(found);
         }
@@ -112,7 +120,7 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
                 (axis, cso.start_vertices(axis))
             }
             Hint::Apart(axis, ids) => (axis, cso.clamp_vertices(ids)),
-            Hint::Contact(normal, _) => (normal, cso.start_vertices(normal)),
+            Hint::Contact([normal, _], _) => (normal, cso.start_vertices(normal)),
         };
         let start = CsoVertex {
             ids,
@@ -134,17 +142,15 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         at: &NormalSeparation,
     ) -> ControlFlow<CurvedAnswer, NormalSeparation> {
         let mut best = *at;
-        let steps: [(FindNormal<A, B>, Effort); 7] = [
-            (stationary::flat, Effort::Near),
-            (stationary::ruled, Effort::Near),
-            (stationary::along_rulings, Effort::Near),
-            (stationary::smooth, Effort::Near),
-            (stationary::flat, Effort::All),
-            (stationary::ruled, Effort::All),
-            (stationary::along_rulings, Effort::All),
+        let steps: [FindNormal<A, B>; 5] = [
+            stationary::near_flat,
+            stationary::ruled,
+            stationary::along_rulings,
+            stationary::smooth,
+            stationary::flat,
         ];
-        for (step, effort) in steps {
-            let Some(found) = step(self.cso, at, effort, self.cost) else {
+        for step in steps {
+            let Some(found) = step(self.cso, at, self.cost) else {
                 continue;
             };
             if found.distance > self.max_distance {

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 
 use super::body::Body;
-use super::query::{CurvedAnswer, CurvedQuery, apart};
+use super::query::{CurvedAnswer, CurvedQuery, CurvedScratch, apart};
 use super::stationary::NormalSeparation;
 use crate::epa::{self, DepthSearch};
 use crate::gjk::{self, Outcome};
@@ -46,7 +46,8 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
             let is_fine = gap < self.tolerance();
             if is_fine && closest.distance - closest.lower_bound <= self.tolerance() {
                 let patch = &mut self.scratch.patch;
-                patch.find(self.cso, near.normal, &near.extreme, self.border_radii);
+                patch.aim(near.normal, &near.extreme);
+                patch.complete(self.cso, self.border_radii);
                 return Some((
                     CurvedAnswer::Near {
                         signed_distance: closest.distance,
@@ -66,7 +67,8 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
     }
 
     /// Finds the way by a coarse search of the depth, unless `best` is from the frame before, and ends by a
-    /// fine one where no piece answers. That may only prove that there is no smaller depth than the best.
+    /// fine one where no piece answers. That may only prove that there is no smaller depth than the best. The
+    /// searches begin at the pieces of surface along the best normal.
     pub(super) fn by_epa(
         &mut self,
         mut best: NormalSeparation,
@@ -75,6 +77,10 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         let mut on_1 = best.extreme.on_1;
         let coarse = COARSE_GAP * self.cso.min_radius();
         let tolerances = [coarse, self.tolerance()];
+        let CurvedScratch { patch, seeds, .. } = &mut *self.scratch;
+        patch.aim(best.normal, &best.extreme);
+        patch.find_cores(self.cso);
+        patch.outline_differences(seeds);
         for tolerance in &tolerances[usize::from(is_known)..] {
             let known = if *tolerance < coarse {
                 -best.distance
@@ -82,8 +88,8 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
                 f64::INFINITY
             };
             let limits = [known, *tolerance];
-            let scratch = &mut self.scratch.epa;
-            match epa::penetration_within(self.cso, &[], limits, scratch, self.cost)? {
+            let CurvedScratch { epa, seeds, .. } = &mut *self.scratch;
+            match epa::penetration_within(self.cso, seeds, limits, epa, self.cost)? {
                 DepthSearch::NotBelow => return Some(self.along(&best, on_1)),
                 DepthSearch::Found(found) => {
                     on_1 = found.on_1;
@@ -110,7 +116,8 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
             return apart(best);
         }
         let patch = &mut self.scratch.patch;
-        patch.find(self.cso, best.normal, &best.extreme, self.border_radii);
+        patch.aim(best.normal, &best.extreme);
+        patch.complete(self.cso, self.border_radii);
         let radius = self.cso.min_radius();
         let limit = best.distance - patch.borders() + SAME_GAP * radius;
         let on_1 = match patch.deepest_point() {

@@ -8,32 +8,7 @@ use super::curvature::Curvature;
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex};
 use crate::tolerance::{PARALLEL_AXES, SETTLED_ANGLE};
-use crate::tuning::{LONGEST_STEP, NEAR_RULING, SMALL_TURN};
-
-/// Which pieces of surface are looked at.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Effort {
-    /// Those that the normal at hand hardly misses, as one of the frame before does.
-    Near,
-    /// All that it might belong to.
-    All,
-}
-
-impl Effort {
-    /// Whether to look at a flat side.
-    fn admits_flat(self, normal: DVec3, about: DVec3) -> bool {
-        self == Self::All || normal.distance_squared(about) < SMALL_TURN * SMALL_TURN
-    }
-
-    /// Whether to look at an edge or a ruled side.
-    fn admits(self, ruling: &Ruling, about: DVec3) -> bool {
-        let reach = match self {
-            Self::Near => SMALL_TURN,
-            Self::All => NEAR_RULING,
-        };
-        (ruling.axis.dot(about) - ruling.sine).abs() < reach
-    }
-}
+use crate::tuning::{LONGEST_STEP, SMALL_TURN};
 
 /// A normal, the vertex of the difference that is extreme along it, and how far apart the shapes are.
 #[derive(Clone, Copy, Debug)]
@@ -68,36 +43,57 @@ impl NormalSeparation {
     }
 }
 
-/// The normal of a flat side that separates most, beside a known normal.
+/// The normal of a flat side that separates most, of those near a known normal.
+pub(super) fn near_flat<A: Body, B: Body>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+    cost: &mut Cost,
+) -> Option<NormalSeparation> {
+    flat_within(cso, at, SMALL_TURN, cost)
+}
+
+/// The normal of a flat side that separates most, of those at the extreme vertices.
 pub(super) fn flat<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
-    effort: Effort,
+    cost: &mut Cost,
+) -> Option<NormalSeparation> {
+    flat_within(cso, at, f64::INFINITY, cost)
+}
+
+fn flat_within<A: Body, B: Body>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+    turn: f64,
     cost: &mut Cost,
 ) -> Option<NormalSeparation> {
     let [id_1, id_2] = at.extreme.ids;
     let outward_2 = -cso.pose.direction_to_2(at.normal);
-    let first = cso.shape_1.flat_normal(at.normal, id_1);
-    let second = cso.shape_2.flat_normal(outward_2, id_2);
-    let second = second.map(|normal| -cso.pose.direction_to_1(normal));
+    let first = cso.shape_1.flat(at.normal, id_1).map(|flat| flat.normal);
+    let second = cso.shape_2.flat(outward_2, id_2);
+    let second = second.map(|flat| -cso.pose.direction_to_1(flat.normal));
     let normals = [first, second].into_iter().flatten();
     normals
-        .filter(|normal| effort.admits_flat(*normal, at.normal))
+        .filter(|normal| normal.distance_squared(at.normal) < turn * turn)
         .map(|normal| NormalSeparation::along(cso, normal, &at.extreme, cost))
         .reduce(NormalSeparation::or)
+}
+
+/// Whether an edge or a ruled side has normals near this one.
+fn is_near(ruling: &Ruling, about: DVec3) -> bool {
+    (ruling.axis.dot(about) - ruling.sine).abs() < SMALL_TURN
 }
 
 /// The normal that suits two rulings, one of each shape, and separates most.
 pub(super) fn ruled<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
-    effort: Effort,
     cost: &mut Cost,
 ) -> Option<NormalSeparation> {
     let mut best: Option<NormalSeparation> = None;
     let of_first = cso.shape_1.rulings(at.normal, at.extreme.ids[0]);
-    for first in of_first.filter(|ruling| effort.admits(ruling, at.normal)) {
-        for second in rulings_2(cso, at).filter(|ruling| effort.admits(ruling, at.normal)) {
+    for first in of_first.filter(|ruling| is_near(ruling, at.normal)) {
+        for second in rulings_2(cso, at).filter(|ruling| is_near(ruling, at.normal)) {
             if let Some(normal) = suiting_both(&first, &second, at.normal) {
                 let found = NormalSeparation::along(cso, normal, &at.extreme, cost);
                 best = Some(best.map_or(found, |best| best.or(found)));
@@ -142,14 +138,13 @@ fn suiting_both(first: &Ruling, second: &Ruling, about: DVec3) -> Option<DVec3> 
 pub(super) fn along_rulings<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
-    effort: Effort,
     cost: &mut Cost,
 ) -> Option<NormalSeparation> {
     let mut best: Option<NormalSeparation> = None;
     let of_first = cso.shape_1.rulings(at.normal, at.extreme.ids[0]);
     let rulings = of_first.chain(rulings_2(cso, at));
-    for ruling in rulings.filter(|ruling| effort.admits(ruling, at.normal)) {
-        if let Some(found) = along_ruling(cso, &ruling, at, effort, cost) {
+    for ruling in rulings.filter(|ruling| is_near(ruling, at.normal)) {
+        if let Some(found) = along_ruling(cso, &ruling, at, cost) {
             best = Some(best.map_or(found, |best| best.or(found)));
         }
     }
@@ -164,7 +159,6 @@ pub(super) const MAX_NEWTON_STEPS: usize = 5;
 pub(super) fn smooth<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
-    _: Effort,
     cost: &mut Cost,
 ) -> Option<NormalSeparation> {
     let mut found = *at;

@@ -38,6 +38,7 @@ pub(crate) enum Core {
 
 impl Core {
     /// With the radius of the border.
+    #[inline]
     pub fn of(shape: &dyn Shape) -> Option<(Self, Real)> {
         // The typed shape of a user's own shape may only be similar.
         match shape.shape_type() {

@@ -112,6 +112,13 @@ impl Polytope for CuboidPolytope {
     }
 
     #[inline]
+    fn face_inset(&self, face: FaceId, p: DVec3) -> Option<f64> {
+        let mut insets = self.half_extents - p.abs();
+        insets[face.index() / 2] = f64::INFINITY;
+        Some(insets.min_element())
+    }
+
+    #[inline]
     fn face_at_vertex(&self, vertex: VertexId, dir: DVec3) -> FaceId {
         let mut best = (f64::NEG_INFINITY, FaceId::default());
         for k in 0..3 {

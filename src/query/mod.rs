@@ -36,7 +36,7 @@ mod seeds;
 mod types;
 mod witness;
 
-pub(crate) use certificate::cone_contains_ball;
+pub(crate) use certificate::{cone_contains_ball, inset};
 
 pub use bounds::{Certificate, SeparationBounds};
 pub(crate) use certificate::flush::FlushFaces;

@@ -11,6 +11,7 @@ mod coherence;
 mod contacts;
 mod covered;
 mod curved;
+mod curved_at_rest;
 mod curved_pairs;
 mod curved_patches;
 mod curved_queries;

@@ -90,16 +90,15 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
 /// What a manifold remembers of its pair. With `borders` around them, the cores may be apart although the
 /// shapes overlap.
 fn hint<M, C>(manifold: &KernelManifold<'_, M, C>, borders: f64) -> Hint {
+    if let Some(least) = manifold.least_distance() {
+        return match manifold.normals() {
+            Some(normals) => Hint::Contact(normals, f64::from(least) + borders < 0.0),
+            None => Hint::None,
+        };
+    }
     match manifold.memory(None) {
-        PairMemory::None => Hint::None,
-        PairMemory::Axis(axis, ids) if manifold.manifold.points.is_empty() => {
-            Hint::Apart(axis, ids)
-        }
-        PairMemory::Axis(normal, _) | PairMemory::Contact(normal, _) => {
-            let points = manifold.manifold.points.iter();
-            let least = points.map(|point| point.dist).fold(f32::INFINITY, f32::min);
-            Hint::Contact(normal, f64::from(least) + borders < 0.0)
-        }
+        PairMemory::Axis(axis, ids) => Hint::Apart(axis, ids),
+        _ => Hint::None,
     }
 }
 
@@ -177,23 +176,17 @@ impl<A: Body, B: Body> Near<'_, '_, A, B> {
             manifold.set_contacts(corrected, &contacts);
         } else if self.least < 0.0 {
             // What overlaps must be pushed out, if not along the corrected normal.
-            self.find_patch(self.normal, patch);
+            patch.find(self.cso, self.normal, self.border_radii);
             manifold.set_contacts(normals.rounded, &self.contacts(patch));
         } else {
             manifold.set_axis(self.normal, [VertexId::default(); 2]);
         }
     }
 
-    fn find_patch(&self, normal: DVec3, patch: &mut Patch) {
-        let start = self.cso.start_vertices(normal);
-        let extreme = self.cso.support(normal, start, &mut Cost::default());
-        patch.find(self.cso, normal, &extreme, self.border_radii);
-    }
-
     /// The contacts along a corrected normal. The depth that the query found is along another one.
     fn along(&self, corrected: [Vec3; 2], patch: &mut Patch) -> Option<Contacts> {
         let normal = corrected[0].as_dvec3().normalize();
-        self.find_patch(normal, patch);
+        patch.find(self.cso, normal, self.border_radii);
         let scale = self.cso.min_radius();
         let least = ABSURD_DEPTH * self.least.min(0.0) - DEPTH_GAP * scale;
         patch.retain(least..=self.max_distance);

@@ -141,6 +141,18 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
         }
     }
 
+    /// The normals of contacts, in the order of the kernels, if they are unit vectors.
+    pub fn normals(&self) -> Option<[DVec3; 2]> {
+        let normals = [self.manifold.local_n1, self.manifold.local_n2];
+        let [first, second] = self.order.to_kernel(normals);
+        Some([unit(first)?, unit(second)?])
+    }
+
+    /// The distance of the deepest contact, as it was.
+    pub fn least_distance(&self) -> Option<f32> {
+        deepest(&self.manifold.points).map(|contact| contact.dist)
+    }
+
     /// Clears the memory of a pair whose bounding spheres are apart: a start for the next query is not worth
     /// a root and a division.
     #[inline(always)]

@@ -4,7 +4,7 @@ use glam::DVec3;
 use parry3d::query::Unsupported;
 use parry3d::shape::{Shape, ShapeType};
 
-use crate::curved::{Body, CircularEdge, Piece, Ruling};
+use crate::curved::{Body, CircularEdge, FlatSide, Piece, Ruling};
 use crate::map_pair::map_pair;
 use crate::parry::convert::Core;
 use crate::parry::order::PairOrder;
@@ -57,8 +57,16 @@ impl Support for Core {
 const MAX_RULINGS: usize = 3;
 
 impl Body for Core {
-    fn flat_normal(&self, dir: DVec3, vertex: VertexId) -> Option<DVec3> {
-        of_shape!(self, shape => shape.flat_normal(dir, vertex))
+    fn flat(&self, dir: DVec3, vertex: VertexId) -> Option<FlatSide> {
+        of_shape!(self, shape => shape.flat(dir, vertex))
+    }
+
+    fn inset(&self, flat: &FlatSide, p: DVec3) -> f64 {
+        of_shape!(self, shape => shape.inset(flat, p))
+    }
+
+    fn point_on_side(&self, dir: DVec3, near: DVec3, cost: &mut Cost) -> Option<DVec3> {
+        of_shape!(self, shape => shape.point_on_side(dir, near, cost))
     }
 
     fn rulings(&self, dir: DVec3, vertex: VertexId) -> impl Iterator<Item = Ruling> {

@@ -7,4 +7,4 @@ mod polygon;
 pub(crate) mod verdict;
 pub(super) mod vertex_edge;
 
-pub(crate) use polygon::cone_contains_ball;
+pub(crate) use polygon::{cone_contains_ball, inset};

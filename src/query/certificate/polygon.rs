@@ -12,7 +12,7 @@ use crate::tolerance::INSET_ROUNDING;
 /// is computed in f32 for four sides at a time, and rounding is subtracted. The point is at most `distance`
 /// from the plane.
 #[inline]
-pub(in crate::query) fn inset(
+pub(crate) fn inset(
     shape: &impl Polytope,
     face: FaceId,
     normal: DVec3,

@@ -1,0 +1,126 @@
+//! Shapes at rest: a flat side, and a point of the other shape under or over it, prove the answer without a patch.
+
+use glam::DVec3;
+
+use super::body::Body;
+use super::piece::FlatSide;
+use super::query::{CurvedAnswer, CurvedQuery};
+use crate::query::{LastContacts, cone_contains_ball};
+use crate::stats::Cost;
+use crate::support::Cso;
+use crate::tolerance::SAME_NORMAL;
+use crate::tuning::{FLUSH_TIE, STILL};
+
+impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
+    /// The answer along the normal of the flat side that gave the `last` normals, if the contacts hardly moved and
+    /// this side proves it. The normals are outward, each in the frame of its shape.
+    pub(super) fn on_flat_side(&mut self, last_normals: [DVec3; 2]) -> Option<CurvedAnswer> {
+        let (cso, last) = (self.cso, self.last?);
+        let [last_1, last_2] = last_normals;
+        if !last.are_within(last_1, STILL * cso.min_radius()) {
+            return None;
+        }
+        let second = self.on_second(last, last_2);
+        let (signed_distance, normal, on_1) = second.or_else(|| self.on_first(last, last_1))?;
+        if signed_distance > self.max_distance {
+            return None;
+        }
+        self.scratch.patch.aim_along(normal);
+        Some(CurvedAnswer::Near {
+            signed_distance,
+            normal,
+            on_1: on_1 + normal * self.border_radii[0],
+        })
+    }
+
+    /// The signed distance along the normal of the flat side of the first shape, and where, on that shape.
+    fn on_first(&mut self, last: &LastContacts, normal: DVec3) -> Option<(f64, DVec3, DVec3)> {
+        let tolerance = self.tolerance();
+        let flat = flat_side(self.cso.shape_1, normal, self.cost)?;
+        let side = OnFlatSide::new(self.cso, flat, self.cost);
+        let middle = || last.middle_of_deepest(flat.normal, FLUSH_TIE * tolerance);
+        let middle = || self.cso.pose.point_to_2(middle());
+        let [on_1, _] = side.proved(tolerance, middle, self.cost)?;
+        Some((side.separation, flat.normal, on_1))
+    }
+
+    /// The same of the second shape.
+    fn on_second(&mut self, last: &LastContacts, outward: DVec3) -> Option<(f64, DVec3, DVec3)> {
+        let (cso, tolerance) = (self.cso, self.tolerance());
+        let flat = flat_side(cso.shape_2, outward, self.cost)?;
+        let inverse = cso.pose.inverse();
+        let reversed = Cso {
+            shape_1: cso.shape_2,
+            shape_2: cso.shape_1,
+            pose: &inverse,
+        };
+        let normal = -cso.pose.direction_to_1(flat.normal);
+        let side = OnFlatSide::new(&reversed, flat, self.cost);
+        let middle = || last.middle_of_deepest(normal, FLUSH_TIE * tolerance);
+        let [_, on_1] = side.proved(tolerance, middle, self.cost)?;
+        Some((side.separation, normal, on_1))
+    }
+}
+
+/// The flat side of a shape that has this normal.
+fn flat_side(shape: &impl Body, normal: DVec3, cost: &mut Cost) -> Option<FlatSide> {
+    let (_, vertex) = shape.support(normal, shape.start_vertex(normal), cost);
+    let flat = shape.flat(normal, vertex)?;
+    (flat.normal.distance_squared(normal) < SAME_NORMAL * SAME_NORMAL).then_some(flat)
+}
+
+/// A flat side of the first shape, and the point of the second one that is nearest to its plane, or deepest under it.
+struct OnFlatSide<'a, 'c, A, B> {
+    cso: &'a Cso<'c, A, B>,
+    flat: FlatSide,
+    /// In the frame of the second shape.
+    nearest: DVec3,
+    separation: f64,
+}
+
+impl<'a, 'c, A: Body, B: Body> OnFlatSide<'a, 'c, A, B> {
+    fn new(cso: &'a Cso<'c, A, B>, flat: FlatSide, cost: &mut Cost) -> Self {
+        let towards = -cso.pose.direction_to_2(flat.normal);
+        let start = cso.shape_2.start_vertex(towards);
+        let (nearest, _) = cso.shape_2.support(towards, start, cost);
+        let height = flat.normal.dot(cso.pose.point_to_1(nearest));
+        Self {
+            cso,
+            flat,
+            nearest,
+            separation: height - flat.offset,
+        }
+    }
+
+    /// Points of both shapes, each in its frame, that prove the separation to be the signed distance up to the
+    /// tolerance. That of the second one is nearest, or near the `middle` of the contacts.
+    fn proved(
+        &self,
+        tolerance: f64,
+        middle: impl FnOnce() -> DVec3,
+        cost: &mut Cost,
+    ) -> Option<[DVec3; 2]> {
+        if let Some(on_1) = self.proves(self.nearest, tolerance) {
+            return Some([on_1, self.nearest]);
+        }
+        let Cso { shape_2, pose, .. } = self.cso;
+        let towards = -pose.direction_to_2(self.flat.normal);
+        let on_2 = shape_2.point_on_side(towards, middle(), cost)?;
+        self.proves(on_2, tolerance).map(|on_1| [on_1, on_2])
+    }
+
+    /// The point of the flat side beside a point of the second shape, if they prove the signed distance. Where the
+    /// shapes overlap, there is a disc in the difference, around this point minus the other.
+    fn proves(&self, on_2: DVec3, tolerance: f64) -> Option<DVec3> {
+        let normal = self.flat.normal;
+        let at = self.cso.pose.point_to_1(on_2);
+        let height = normal.dot(at) - self.flat.offset;
+        let on_1 = at - normal * height;
+        let inset = self.cso.shape_1.inset(&self.flat, on_1);
+        let most = self.separation + tolerance;
+        let is_proved = height <= most
+            && inset > 0.0
+            && (most >= 0.0 || cone_contains_ball(inset, -most, self.cso.center(), normal));
+        is_proved.then_some(on_1)
+    }
+}

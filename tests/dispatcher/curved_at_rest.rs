@@ -1,0 +1,112 @@
+//! Cylinders and cones at rest keep their contacts, are as right as without a past, and cost little.
+
+use isa_gjk::{IsaGjkDispatcher, Stage};
+use parry3d::math::{Pose, Real, Rotation, Vector};
+use testkit::curved::{Body, Judge};
+use testkit::generate::Rng;
+use testkit::memory::Memory;
+use testkit::pair::{PREDICTION, hull, trajectory};
+use testkit::pose::ExactPose;
+
+/// The promise, as a share of the smaller diameter.
+const PROMISE: f64 = 1e-5;
+const FRAMES: usize = 30;
+
+/// Their tops are level, 0.5 above their origins.
+fn grounds() -> Vec<Body> {
+    let half = Vector::new(0.4, 0.5, 0.6);
+    let corner = |i: usize| {
+        let side = |bit: usize| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        half * Vector::new(side(0), side(1), side(2))
+    };
+    let corners: Vec<Vector> = (0..8).map(corner).collect();
+    let level = |x: Real, z: Real| Vector::new(x, 0.5, z);
+    vec![
+        Body::cuboid(half, 0.0),
+        Body::cuboid(Vector::new(0.3, 0.4, 0.5), 0.1),
+        Body::hull(&corners, 0.0).expect("a solid"),
+        Body::cylinder(0.5, 0.4, 0.0),
+        Body::triangle([level(-1.0, 1.0), level(1.0, 1.0), level(0.0, -1.3)], 0.0),
+    ]
+}
+
+/// Bodies, how they are turned, and how far they reach down then.
+fn bodies() -> Vec<(Body, Rotation, Real)> {
+    let on_its_side = Rotation::from_rotation_x(std::f32::consts::FRAC_PI_2);
+    let lean = (0.25_f32).atan2(0.6);
+    let on_its_slant = Rotation::from_rotation_x(std::f32::consts::FRAC_PI_2 + lean);
+    vec![
+        (Body::cylinder(0.3, 0.25, 0.0), Rotation::IDENTITY, 0.3),
+        (Body::cylinder(0.3, 0.4, 0.0), Rotation::IDENTITY, 0.3),
+        (Body::cylinder(0.3, 0.25, 0.05), Rotation::IDENTITY, 0.35),
+        (Body::cylinder(0.3, 0.25, 0.0), on_its_side, 0.25),
+        (Body::cylinder(0.3, 0.25, 0.05), on_its_side, 0.3),
+        (Body::cone(0.3, 0.25, 0.0), Rotation::IDENTITY, 0.3),
+        (Body::cone(0.3, 0.25, 0.0), on_its_slant, 0.3 * lean.sin()),
+    ]
+}
+
+fn exact(pose: &Pose) -> ExactPose {
+    ExactPose {
+        rotation: pose.rotation.as_dquat().normalize(),
+        translation: pose.translation.as_dvec3(),
+    }
+}
+
+#[test]
+fn bodies_at_rest_keep_their_contacts_at_little_cost() {
+    let mut rng = Rng::new(401);
+    for ground in grounds() {
+        for (body, turn, reach) in bodies() {
+            for (aside, gap) in [(0.0, 1e-3), (0.02, -1e-3), (0.3, -1e-3), (0.1, -2e-2)] {
+                let what = format!("{} on {}, {aside} aside, {gap}", body.name, ground.name);
+                let dispatcher = IsaGjkDispatcher::default();
+                let mut memory = Memory::default();
+                let mut supports = 0;
+                for frame in 0..FRAMES {
+                    let mut noise = || (rng.direction() * 1e-6).as_vec3();
+                    let pose = Pose::from_parts(
+                        Vector::new(aside, 0.5 + reach + gap, 0.04) + noise(),
+                        Rotation::from_scaled_axis(Vector::Y * 0.3 + noise()) * turn,
+                    );
+                    let shapes = [&ground.shape, &body.shape];
+                    let before = dispatcher.stats();
+                    let manifold = memory.update(&dispatcher, &pose, shapes, PREDICTION);
+                    let cost = dispatcher.stats().since(&before);
+                    if frame > 0 {
+                        supports += cost.supports;
+                    }
+                    if frame % 10 == 9 {
+                        let judge = Judge::new([&ground, &body], exact(&pose));
+                        let mut faults = judge.manifold(manifold, PREDICTION.into());
+                        faults.gap = 0.0;
+                        assert!(faults.are_within(PROMISE), "{what}: {faults:?}");
+                    }
+                }
+                let kept = dispatcher.stats().answered[Stage::Kept as usize];
+                assert!(kept + 2 >= FRAMES as u64, "{what}: kept {kept} times");
+                let mean = supports as f64 / (FRAMES - 1) as f64;
+                assert!(mean < 4.2, "{what}: {mean} supports per update");
+            }
+        }
+    }
+}
+
+/// Every edge beside the normal was tried, by a search of its own.
+#[test]
+fn no_update_of_a_hull_takes_long() {
+    for curved in [Body::cylinder(0.5, 0.4, 0.0), Body::cone(0.5, 0.4, 0.0)] {
+        let shapes = [hull(60, 1), curved.shape.clone()];
+        for gap in [0.005, -0.001, -0.05] {
+            let dispatcher = IsaGjkDispatcher::default();
+            let mut memory = Memory::default();
+            for pose in trajectory(&shapes, gap, 1.0) {
+                let before = dispatcher.stats();
+                memory.update(&dispatcher, &pose, [&shapes[0], &shapes[1]], PREDICTION);
+                let cost = dispatcher.stats().since(&before);
+                let most = cost.supports.max(3 * cost.iterations);
+                assert!(most <= 150, "{} at {gap}: {cost:?}", curved.name);
+            }
+        }
+    }
+}
