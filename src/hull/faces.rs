@@ -1,23 +1,26 @@
 //! The faces of a hull (polygons with their planes), and the outlines of clusters.
 
+use std::sync::OnceLock;
+
 use glam::{DVec3, Vec3};
 
-use super::clusters::FaceClusters;
-use super::graph::pack_edge;
+use super::clusters::{FaceClusters, grow_clusters};
+use super::graph::{EdgeGraph, pack_edge};
 use crate::support::{EdgeId, FaceId};
 
-/// The faces, followed by the outlines of the clusters.
+/// The faces, and the clusters of some of them.
 #[derive(Clone, Debug)]
 pub(super) struct Faces {
     /// There is one more entry, which ends the corners of the last one.
     pub(super) polygons: Box<[FaceRecord]>,
     pub(super) count: usize,
     pub(super) corners: Box<[FaceCorner]>,
-    pub(super) clusters: FaceClusters,
+    /// Grown when the first of them is looked up: few hulls ever rest on one.
+    pub(super) clusters: OnceLock<Box<FaceClusters>>,
 }
 
-/// A face with its supporting plane, or an outline. Values that are read together lie together, since large
-/// hulls do not fit into the nearest cache.
+/// A face with its supporting plane. Values that are read together lie together, since large hulls do not
+/// fit into the nearest cache.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FaceRecord {
     /// Rounded to f32; the offset is exact for that normal.
@@ -27,14 +30,14 @@ pub(super) struct FaceRecord {
     pub(super) offset: f64,
 }
 
-/// The mark of a face that belongs to a cluster. Most faces do not, and then nothing else need be read. No
-/// hull has so many corners that the bit is in use.
-pub(super) const IN_CLUSTER: u32 = 1 << 31;
+/// The mark of a face beside another one of about the same direction: only such faces are in clusters. Most
+/// faces are not, and then nothing else need be read. No hull has so many corners that the bit is in use.
+pub(super) const BESIDE_LIKE: u32 = 1 << 31;
 
 impl FaceRecord {
     #[inline]
     fn first(&self) -> usize {
-        (self.first & !IN_CLUSTER) as usize
+        (self.first & !BESIDE_LIKE) as usize
     }
 }
 
@@ -68,7 +71,18 @@ impl Faces {
     #[inline]
     pub fn polygon(&self, face: FaceId) -> &[FaceCorner] {
         let f = face.index();
-        &self.corners[self.polygons[f].first()..self.polygons[f + 1].first()]
+        if f < self.count {
+            &self.corners[self.polygons[f].first()..self.polygons[f + 1].first()]
+        } else {
+            self.outline(f - self.count)
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn outline(&self, cluster: usize) -> &[FaceCorner] {
+        let clusters = self.clusters.get();
+        clusters.map_or(&[], |clusters| clusters.outline(cluster))
     }
 
     /// The id of the `i`-th side of a face or an outline, if that side is an edge.
@@ -80,13 +94,25 @@ impl Faces {
         (slot != NO_EDGE).then(|| pack_edge(vertex.min(next).into(), slot))
     }
 
+    /// Whether a neighbour of a face has about the same direction.
+    #[inline]
+    pub fn is_beside_like(&self, face: FaceId) -> bool {
+        self.polygons[face.index()].first & BESIDE_LIKE != 0
+    }
+
     /// The cluster that a face belongs to: the id of its outline, and the faces under the outline.
     #[inline]
-    pub fn cluster(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
-        if self.polygons[face.index()].first & IN_CLUSTER == 0 {
+    pub fn cluster(
+        &self,
+        face: FaceId,
+        points: &[Vec3],
+        graph: &EdgeGraph,
+    ) -> Option<(FaceId, &[u16])> {
+        if !self.is_beside_like(face) {
             return None;
         }
-        let (cluster, faces) = self.clusters.containing(face);
+        let grow = || Box::new(grow_clusters(points, self, graph));
+        let (cluster, faces) = self.clusters.get_or_init(grow).containing(face)?;
         Some((FaceId::new(self.len() + cluster), faces))
     }
 
@@ -110,7 +136,12 @@ impl Faces {
         best.into()
     }
 
+    /// With clusters, if they have been grown.
     pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.polygons) + size_of_val(&*self.corners) + self.clusters.heap_bytes()
+        let clusters = self
+            .clusters
+            .get()
+            .map_or(0, |clusters| clusters.heap_bytes());
+        size_of_val(&*self.polygons) + size_of_val(&*self.corners) + clusters
     }
 }

@@ -73,9 +73,9 @@ impl Hull {
     /// The heap memory in bytes. A surface of triangles, with six around each vertex, takes 118 bytes per
     /// vertex: 12 for the point, 32 for the neighbours and the faces between them, 48 for the planes of two
     /// faces, 24 for their corners and edges, and 2 for the start table. A vertex with more than eight
-    /// neighbours takes 32 more. Merged faces take less. Nearly coplanar faces, common on finely triangulated
-    /// round hulls, take some 20 bytes per vertex more. Hulls that are scanned need 12 bytes per vertex
-    /// instead of the start table.
+    /// neighbours takes 32 more. Merged faces take less. Hulls that are scanned need 12 bytes per vertex
+    /// instead of the start table. From the first contact where faces lie nearly in one plane on, clusters take
+    /// some 20 bytes per vertex more.
     pub fn heap_bytes(&self) -> usize {
         let search = match &self.search {
             SupportSearch::Scan(scan) => scan.heap_bytes(),
@@ -259,7 +259,7 @@ impl Polytope for Hull {
 
     #[inline]
     fn cluster(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
-        self.faces.cluster(face)
+        self.faces.cluster(face, &self.points, &self.graph)
     }
 
     #[inline]

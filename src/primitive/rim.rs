@@ -30,7 +30,8 @@ impl Rim {
 fn length_across(dir: DVec3) -> f64 {
     let squared = dir.x * dir.x + dir.z * dir.z;
     // perf: `hypot` is a call, which took a seventh of an update. Squares of such sizes have all their digits.
-    if (f64::EPSILON..=f64::MAX).contains(&squared) {
+    // The others are far smaller than any shape, so pairs of all sizes are answered alike.
+    if (f64::MIN_POSITIVE / f64::EPSILON..=f64::MAX).contains(&squared) {
         squared.sqrt()
     } else {
         dir.x.hypot(dir.z)

@@ -1,10 +1,70 @@
 //! The triangles of parry's polyhedron as its faces tell them. parry merges triangles into faces, but lists the
 //! edges within a face, too.
 
+use std::ops::Range;
+
 use glam::{DVec3, Vec3};
 use parry3d::shape::ConvexPolyhedron;
 
+use super::flat_sides::{SideBorder, from_lowest, side_normal, zigzag};
 use crate::tuning::SEEMS_FLAT;
+
+/// The triangles of a polyhedron whose faces are its flat sides, with diagonals that depend only on its points, in
+/// the order of their corners. `None` for others.
+pub(super) fn triangles_of_flat_sides(
+    polyhedron: &ConvexPolyhedron,
+    points: &[DVec3],
+    radius: f64,
+) -> Option<Vec<[u32; 3]>> {
+    let mut triangles = Vec::with_capacity((2 * points.len()).checked_sub(4)?);
+    // What the first of the two sides along each edge looks like.
+    let mut borders: Vec<Option<SideBorder>> = vec![None; polyhedron.edges().len()];
+    let mut open = 0_usize;
+    let mut polygon = Vec::new();
+    for face in polyhedron.faces() {
+        let range = places(face.first_vertex_or_edge, face.num_vertices_or_edges);
+        let corners = polyhedron.vertices_adj_to_face().get(range.clone())?;
+        let edges = polyhedron.edges_adj_to_face().get(range)?;
+        let (lowest, _) = corners.iter().enumerate().min_by_key(|(_, v)| **v)?;
+        polygon.clear();
+        polygon.extend(corners[lowest..].iter().chain(&corners[..lowest]));
+        let normal = side_normal(points, &polygon, radius)?;
+        let edges = edges[lowest..].iter().chain(&edges[..lowest]);
+        for (i, &edge) in edges.enumerate() {
+            let here = SideBorder::new(points, &polygon, i, normal)?;
+            let border = borders.get_mut(edge as usize)?;
+            match border.take() {
+                Some(there) if here.bends(&there, radius) => open -= 1,
+                Some(_) => return None,
+                None => {
+                    *border = Some(here);
+                    open += 1;
+                }
+            }
+        }
+        triangles.extend(zigzag(&polygon));
+    }
+    if open > 0 {
+        return None;
+    }
+    sorted(&triangles, points.len())
+}
+
+/// The places of a face's corners, and of its edges, in parry's lists.
+fn places(first: u32, count: u32) -> Range<usize> {
+    first as usize..first as usize + count as usize
+}
+
+/// Whether the first face of more than three corners seems to be flat. This only decides what is tried first.
+pub(super) fn has_flat_sides(polyhedron: &ConvexPolyhedron) -> bool {
+    let mut faces = polyhedron.faces().iter();
+    let large = faces.find(|face| face.num_vertices_or_edges > 3);
+    large.is_some_and(|face| {
+        let range = places(face.first_vertex_or_edge, 4);
+        let corners = polyhedron.vertices_adj_to_face().get(range);
+        corners.is_some_and(|corners| bends_upward(polyhedron.points(), corners).is_none())
+    })
+}
 
 /// The triangles of a polyhedron.
 pub(super) struct FaceTriangles {
@@ -19,55 +79,80 @@ impl FaceTriangles {
     pub fn of(polyhedron: &ConvexPolyhedron) -> Option<Self> {
         let points = polyhedron.points();
         let count = (2 * points.len()).checked_sub(4)?;
-        let mut keys = Vec::with_capacity(count);
+        let mut triangles = Vec::with_capacity(count);
         let mut within = EdgesWithin::default();
         let mut seem_flat = false;
         for (number, face) in (0..).zip(polyhedron.faces()) {
-            let first = face.first_vertex_or_edge as usize;
-            let end = first + face.num_vertices_or_edges as usize;
-            let corners = polyhedron.vertices_adj_to_face().get(first..end)?;
-            if let &[a, b, c] = corners {
-                keys.push(key([a, b, c]));
-            } else {
-                within.find(polyhedron);
-                within.split(number, corners, &mut keys)?;
-                seem_flat |= seems_flat(points, corners);
+            let range = places(face.first_vertex_or_edge, face.num_vertices_or_edges);
+            let corners = polyhedron.vertices_adj_to_face().get(range)?;
+            match *corners {
+                [a, b, c] => triangles.push(from_lowest([a, b, c])),
+                [a, b, c, d] if let Some(upward) = bends_upward(points, corners) => {
+                    let halves = if upward {
+                        [[b, c, d], [d, a, b]]
+                    } else {
+                        [[a, b, c], [c, d, a]]
+                    };
+                    triangles.extend(halves.map(from_lowest));
+                }
+                _ => {
+                    within.find(polyhedron);
+                    within.split(number, corners, &mut triangles)?;
+                    seem_flat |= bends_upward(points, corners).is_none();
+                }
             }
         }
-        if keys.len() != count {
+        if triangles.len() != count {
             return None;
         }
-        keys.sort_unstable();
         Some(Self {
-            triangles: keys.into_iter().map(corners_of).collect(),
+            triangles: sorted(&triangles, points.len())?,
             seem_flat,
         })
     }
 }
 
-/// A triangle from its lowest corner as a number. Ids of vertices have fewer than 21 bits.
-fn key([a, b, c]: [u32; 3]) -> u64 {
-    let [a, b, c] = if a < b && a < c {
-        [a, b, c]
-    } else if b < c {
-        [b, c, a]
-    } else {
-        [c, a, b]
-    };
-    u64::from(a) << 42 | u64::from(b) << 21 | u64::from(c)
+/// Triangles in the order of their corners: a counting sort by the first one, of so many. `None` if there is no
+/// such corner.
+fn sorted(triangles: &[[u32; 3]], corners: usize) -> Option<Vec<[u32; 3]>> {
+    // The places are one entry too far. Filling moves each to its final value.
+    let mut first = vec![0_usize; corners + 2];
+    for &[a, ..] in triangles {
+        *first.get_mut(a as usize + 2)? += 1;
+    }
+    for v in 2..first.len() {
+        first[v] += first[v - 1];
+    }
+    let mut sorted = vec![[0; 3]; triangles.len()];
+    for triangle in triangles {
+        let place = &mut first[triangle[0] as usize + 1];
+        sorted[*place] = *triangle;
+        *place += 1;
+    }
+    for ends in first[..=corners].windows(2) {
+        // Most vertices are the lowest of two triangles.
+        match &mut sorted[ends[0]..ends[1]] {
+            [] | [_] => {}
+            [one, other] => {
+                if one[1] > other[1] {
+                    std::mem::swap(one, other);
+                }
+            }
+            all => all.sort_unstable(),
+        }
+    }
+    Some(sorted)
 }
 
-fn corners_of(key: u64) -> [u32; 3] {
-    [42, 21, 0].map(|shift| (key >> shift) as u32 & ((1 << 21) - 1))
-}
-
-/// Whether the first four corners of a face lie nearly in a plane. This only decides what is tried first.
-fn seems_flat(points: &[Vec3], corners: &[u32]) -> bool {
+/// Whether the fourth corner of a face is above the first three; `None` if it is nearly in their plane.
+fn bends_upward(points: &[Vec3], corners: &[u32]) -> Option<bool> {
     let at = |i: usize| points[corners[i] as usize].as_dvec3();
     let [a, b, c] = [1, 2, 3].map(|i| at(i) - at(0));
     let normal: DVec3 = a.cross(b);
     let height = normal.dot(c);
-    height * height <= SEEMS_FLAT * SEEMS_FLAT * normal.length_squared() * b.length_squared()
+    let is_flat =
+        height * height <= SEEMS_FLAT * SEEMS_FLAT * normal.length_squared() * b.length_squared();
+    (!is_flat).then_some(height > 0.0)
 }
 
 /// The edges within faces of more than three corners.
@@ -96,7 +181,9 @@ impl EdgesWithin {
     }
 
     /// Cuts a face into triangles along the edges within it: a corner without such an edge is cut off.
-    fn split(&mut self, face: u32, corners: &[u32], keys: &mut Vec<u64>) -> Option<()> {
+    fn split(&mut self, face: u32, corners: &[u32], triangles: &mut Vec<[u32; 3]>) -> Option<()> {
+        let skipped = self.edges[self.next..].iter();
+        self.next += skipped.take_while(|edge| edge.0 < face).count();
         let rest = &self.edges[self.next..];
         let count = rest.iter().take_while(|edge| edge.0 == face).count();
         if count + 3 != corners.len() {
@@ -113,7 +200,7 @@ impl EdgesWithin {
             while let [.., a, b, c] = chain[..]
                 && *self.ends.get(b as usize)? == 0
             {
-                keys.push(key([a, b, c]));
+                triangles.push(from_lowest([a, b, c]));
                 chain.truncate(chain.len() - 2);
                 chain.push(c);
                 if left > 0 {

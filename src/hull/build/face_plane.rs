@@ -2,6 +2,8 @@
 
 use glam::{DVec3, Vec3};
 
+use super::area_vectors::AreaVector;
+use super::bends::Bends;
 use super::half_edge::{HalfEdge, HalfEdgeMesh};
 use crate::tolerance::FACE_FLATNESS;
 
@@ -22,13 +24,33 @@ impl FacePlane {
         is_overtopped: false,
     };
 
+    /// The plane of a triangle through its outermost corner: that of a face whose corners are steep.
+    #[inline]
+    pub fn of_triangle(triangle: &AreaVector, radius: f64) -> Self {
+        let plane = Self {
+            normal: triangle.normal,
+            offset: triangle.highest,
+            is_overtopped: false,
+        };
+        plane.or_none(triangle.lowest, radius)
+    }
+
+    /// No plane if a corner is too far from it.
+    #[inline]
+    fn or_none(self, lowest: f64, radius: f64) -> Self {
+        if self.offset - lowest > 2.0 * FACE_FLATNESS * radius {
+            return Self::NONE;
+        }
+        self
+    }
+
     /// The plane goes through the outermost of the polygon's corners and their neighbours: on a convex hull
     /// no vertex is farther out. Around a steep corner, no neighbour is.
     pub fn new(
         points: &[DVec3],
         mesh: &HalfEdgeMesh<'_>,
         polygon: &[HalfEdge],
-        is_steep: &[bool],
+        bends: &Bends,
         radius: f64,
     ) -> Self {
         let normal = polygon_normal(points, mesh, polygon).as_vec3();
@@ -44,7 +66,7 @@ impl FacePlane {
             let level = height(corner);
             lowest = -higher(-lowest, -level);
             highest = higher(highest, level);
-            if !is_steep[corner as usize] {
+            if !bends.is_steep(corner) {
                 for to in mesh.outgoing(corner).iter().map(|side| u32::from(side.to)) {
                     if to != before && to != after {
                         around = higher(around, height(to));
@@ -53,15 +75,12 @@ impl FacePlane {
             }
             before = corner;
         }
-        let offset = higher(highest, around);
-        if offset - lowest > 2.0 * FACE_FLATNESS * radius {
-            return Self::NONE;
-        }
-        Self {
+        let plane = Self {
             normal,
-            offset,
+            offset: higher(highest, around),
             is_overtopped: around > lowest,
-        }
+        };
+        plane.or_none(lowest, radius)
     }
 }
 

@@ -1,41 +1,25 @@
 //! Merging coplanar triangles into faces.
 
-use std::cmp::Reverse;
-use std::{iter, mem};
+use std::mem;
+use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use super::clusters::grow_clusters;
+use super::area_vectors::AreaVectors;
+use super::bends::Bends;
 use super::face_plane::{FacePlane, polygon_normal};
-use super::flat_edges::{AreaVectors, NearlyFlatEdges};
+use super::flat_edges::NearlyFlatEdges;
 use super::half_edge::{HalfEdge, HalfEdgeMesh, triangle};
 use super::regions::CoplanarRegions;
-use crate::hull::clusters::FaceClusters;
-use crate::hull::faces::{FaceCorner, FaceRecord, Faces, IN_CLUSTER, NO_EDGE};
-use crate::hull::graph::EdgeGraph;
-use crate::support::FaceId;
+use crate::hull::faces::{BESIDE_LIKE, FaceCorner, FaceRecord, Faces};
 use crate::tolerance::{CLUSTER_ANGLE_COS, FACE_FLATNESS};
 
 /// The result of merging triangles.
 pub(super) struct MergedFaces {
     /// The face of each triangle.
     pub face_of: Vec<u16>,
-    /// The faces from which clusters may grow, ordered by their largest triangles.
-    seeds: Vec<ClusterSeed>,
     /// The faces with a neighbouring vertex that is higher than one of their corners.
     pub overtopped: Vec<u16>,
-}
-
-impl MergedFaces {
-    /// Notes a face, and the triangles that it was made of.
-    fn note(&mut self, face: u16, triangles: &[u32], plane: &FacePlane) {
-        for &t in triangles {
-            self.face_of[t as usize] = face;
-        }
-        if plane.is_overtopped {
-            self.overtopped.push(face);
-        }
-    }
 }
 
 impl Faces {
@@ -45,163 +29,174 @@ impl Faces {
         points: &[DVec3],
         mesh: &HalfEdgeMesh<'_>,
         surface: &AreaVectors,
-        is_steep: &[bool],
+        bends: &Bends,
         radius: f64,
     ) -> (Self, MergedFaces) {
-        let count = mesh.triangles.len();
-        let flat = NearlyFlatEdges::new(mesh, surface);
+        // No other edge is flat enough for a face.
+        let flat = NearlyFlatEdges::among(&bends.not_steep, points, mesh, surface, radius);
         let regions = CoplanarRegions::grow(points, mesh, surface, &flat, radius);
-        let mut merged = MergedFaces {
-            face_of: vec![0; count],
-            seeds: Vec::new(),
-            overtopped: Vec::new(),
+        let mut builder = Builder {
+            points,
+            mesh,
+            surface,
+            bends,
+            radius,
+            polygons: Vec::with_capacity(mesh.triangles.len() + 1),
+            corners: Vec::with_capacity(3 * mesh.triangles.len()),
+            merged: MergedFaces {
+                face_of: vec![0; mesh.triangles.len()],
+                overtopped: Vec::new(),
+            },
+            has_planes: true,
         };
-        let mut faces = Builder::with_capacity(count);
-        let mut is_added = vec![false; regions.len()];
-        // The largest triangle of the region of each face.
-        let mut largest = Vec::with_capacity(count);
-        let mut add = |polygon: &[HalfEdge], triangles: &[u32]| {
-            let plane = FacePlane::new(points, mesh, polygon, is_steep, radius);
-            merged.note(faces.polygons.len() as u16, triangles, &plane);
-            let corner = |&side: &HalfEdge| FaceCorner {
-                vertex: mesh.start(side) as u16,
-                slot: mesh.edge_slot(side),
-            };
-            faces.add(&plane, polygon.iter().map(corner));
-        };
-        let mut polygon = Vec::new();
-        for &r in &regions.of {
-            if mem::replace(&mut is_added[r as usize], true) {
-                continue;
-            }
-            let region = regions.triangles(r as usize);
-            let is_one_face = region.len() > 1
-                && regions.boundary(mesh, region, &mut polygon)
-                && is_convex(points, mesh, &polygon, radius);
-            if is_one_face {
-                add(&polygon, region);
-                largest.push(region[0]);
-            } else {
-                // A region that is not a convex polygon becomes one face per triangle.
-                for &t in region {
-                    add(&[3 * t, 3 * t + 1, 3 * t + 2], &[t]);
-                    largest.push(region[0]);
-                }
-            }
+        builder.add_all(&regions);
+        let has_planes = builder.has_planes;
+        let (mut faces, merged) = builder.finish();
+        if !has_planes {
+            // A face without a plane may be in any cluster.
+            let all = faces.polygons.iter_mut().take(faces.count);
+            all.for_each(|face| face.first |= BESIDE_LIKE);
+        } else if flat.is_empty() {
+            faces.mark_alike(mesh, &merged.face_of, bends.nearly_flat.iter().copied());
+        } else {
+            // The normal of a merged face is not that of its triangles.
+            let edges = (0..).zip(mesh.triangles.as_flattened());
+            faces.mark_alike(mesh, &merged.face_of, edges.map(|(h, _)| h));
         }
-        let faces = faces.finish(largest.len(), FaceClusters::default());
-        merged.seeds = faces.cluster_seeds(mesh, &flat, &merged.face_of);
-        merged.seeds.sort_unstable_by_key(|seed| {
-            let t = largest[usize::from(seed.face)];
-            (Reverse(surface.areas[t as usize].to_bits()), t, seed.face)
-        });
         (faces, merged)
     }
 
-    /// The faces that have a nearly flat edge to another face, in their order.
-    fn cluster_seeds(
-        &self,
-        mesh: &HalfEdgeMesh<'_>,
-        flat: &NearlyFlatEdges,
-        face_of: &[u16],
-    ) -> Vec<ClusterSeed> {
-        if flat.is_empty() {
-            return Vec::new();
-        }
-        // A face without a plane may join any cluster.
-        let has_planes = (0..self.len()).all(|face| self.normal(FaceId::new(face)) != DVec3::ZERO);
-        let mut seeds = vec![(!has_planes, !has_planes); self.len()];
-        for h in (0..3 * face_of.len() as HalfEdge).filter(|&h| flat.contains(h)) {
-            let [here, beyond] = [h, mesh.twin(h)].map(|h| face_of[triangle(h)]);
-            if here != beyond {
-                let [one, other] = [here, beyond].map(|face| self.normal(face.into()));
-                let (is_seed, has_company) = &mut seeds[usize::from(here)];
-                *is_seed = true;
-                *has_company |= one.dot(other) >= CLUSTER_ANGLE_COS;
-            }
-        }
-        let mut all = Vec::new();
-        for (face, (is_seed, has_company)) in (0..).zip(seeds) {
-            if is_seed {
-                all.push(ClusterSeed { face, has_company });
-            }
-        }
-        all
-    }
-
-    /// Finds the clusters. The `graph` must know the faces already.
-    pub(super) fn add_clusters(
+    /// Marks the faces of about the same direction that meet at some of these edges.
+    fn mark_alike(
         &mut self,
-        points: &[DVec3],
-        graph: &EdgeGraph,
-        merged: &MergedFaces,
+        mesh: &HalfEdgeMesh<'_>,
+        face_of: &[u16],
+        edges: impl Iterator<Item = HalfEdge>,
     ) {
-        let clusters = grow_clusters(points, self, graph, &merged.seeds);
-        if clusters.is_empty() {
-            return;
-        }
-        let mut faces = Builder {
-            polygons: mem::take(&mut self.polygons).into_vec(),
-            corners: mem::take(&mut self.corners).into_vec(),
-        };
-        faces.polygons.pop();
-        for cluster in &clusters {
-            for &member in &cluster.members {
-                faces.polygons[usize::from(member)].first |= IN_CLUSTER;
+        for h in edges {
+            let faces = [h, mesh.twin(h)].map(|h| face_of[triangle(h)]);
+            let [here, beyond] = faces.map(|face| self.normal(face.into()));
+            if faces[0] != faces[1] && here.dot(beyond) >= CLUSTER_ANGLE_COS {
+                for face in faces {
+                    self.polygons[usize::from(face)].first |= BESIDE_LIKE;
+                }
             }
-            let ends = cluster.outline.iter().cycle().skip(1);
-            let corner = |(&from, &to): (&u16, &u16)| FaceCorner {
-                vertex: from,
-                slot: graph.edge_slot(from.into(), to.into()).unwrap_or(NO_EDGE),
-            };
-            faces.add(
-                &FacePlane::NONE,
-                cluster.outline.iter().zip(ends).map(corner),
-            );
         }
-        *self = faces.finish(self.count, FaceClusters::new(&clusters, self.count));
     }
 }
 
-/// A face from which a cluster may grow.
-pub(super) struct ClusterSeed {
-    pub face: u16,
-    /// Whether a face beside it may be a member, too.
-    pub has_company: bool,
-}
-
-/// Polygons one after the other.
-struct Builder {
+/// Adds one face after the other.
+struct Builder<'a> {
+    points: &'a [DVec3],
+    mesh: &'a HalfEdgeMesh<'a>,
+    surface: &'a AreaVectors,
+    bends: &'a Bends,
+    radius: f64,
     polygons: Vec<FaceRecord>,
     corners: Vec<FaceCorner>,
+    merged: MergedFaces,
+    has_planes: bool,
 }
 
-impl Builder {
-    fn with_capacity(triangles: usize) -> Self {
-        Self {
-            polygons: Vec::with_capacity(triangles + 1),
-            corners: Vec::with_capacity(3 * triangles),
+impl Builder<'_> {
+    fn add_all(&mut self, regions: &CoplanarRegions) {
+        if self.bends.are_steep() {
+            return self.add_steep_triangles();
+        }
+        let mut is_added = vec![false; regions.len()];
+        let mut polygon = Vec::new();
+        for t in 0..self.mesh.triangles.len() {
+            let Some(region) = regions.of(t) else {
+                self.add_triangle(t);
+                continue;
+            };
+            if mem::replace(&mut is_added[region], true) {
+                continue;
+            }
+            let triangles = regions.triangles(region);
+            let is_one_face = triangles.len() > 1
+                && regions.boundary(self.mesh, triangles, &mut polygon)
+                && is_convex(self.points, self.mesh, &polygon, self.radius);
+            if is_one_face {
+                self.add_polygon(&polygon, triangles);
+            } else {
+                // A region that is not a convex polygon becomes one face per triangle.
+                triangles
+                    .iter()
+                    .for_each(|&t| self.add_triangle(t as usize));
+            }
         }
     }
 
-    fn add(&mut self, plane: &FacePlane, corners: impl Iterator<Item = FaceCorner>) {
+    /// Adds all triangles of a surface whose edges are all steep: each is a face of its own.
+    fn add_steep_triangles(&mut self) {
+        let corners = self.mesh.corners();
+        for (t, (triangle, corners)) in (0..).zip(self.surface.triangles.iter().zip(corners)) {
+            let plane = FacePlane::of_triangle(triangle, self.radius);
+            self.merged.face_of[usize::from(t)] = t;
+            self.add_plane(&plane);
+            self.corners.extend_from_slice(&corners);
+        }
+    }
+
+    /// Adds a triangle as a face of its own.
+    #[inline]
+    fn add_triangle(&mut self, t: usize) {
+        let corners = self.mesh.triangles[t];
+        let sides = self.mesh.sides_of(t);
+        let is_steep = corners.iter().all(|&v| self.bends.is_steep(v));
+        let plane = if is_steep {
+            FacePlane::of_triangle(&self.surface.triangles[t], self.radius)
+        } else {
+            self.plane(&sides)
+        };
+        self.merged.face_of[t] = self.add_plane(&plane);
+        self.corners
+            .extend(sides.map(|side| self.mesh.corner(side)));
+    }
+
+    /// Adds a polygon that consists of some triangles.
+    fn add_polygon(&mut self, polygon: &[HalfEdge], triangles: &[u32]) {
+        let plane = self.plane(polygon);
+        let face = self.add_plane(&plane);
+        for &t in triangles {
+            self.merged.face_of[t as usize] = face;
+        }
+        let mesh = self.mesh;
+        self.corners
+            .extend(polygon.iter().map(|&side| mesh.corner(side)));
+    }
+
+    fn plane(&self, polygon: &[HalfEdge]) -> FacePlane {
+        FacePlane::new(self.points, self.mesh, polygon, self.bends, self.radius)
+    }
+
+    /// Adds the plane of a face whose corners come next, and returns the number of the face.
+    #[inline]
+    fn add_plane(&mut self, plane: &FacePlane) -> u16 {
+        let face = self.polygons.len() as u16;
+        if plane.is_overtopped {
+            self.merged.overtopped.push(face);
+        }
+        self.has_planes &= plane.offset < f64::INFINITY;
         self.polygons.push(FaceRecord {
             normal: plane.normal,
             first: self.corners.len() as u32,
             offset: plane.offset,
         });
-        self.corners.extend(corners);
+        face
     }
 
-    /// The first `count` polygons are faces; the others are outlines of clusters.
-    fn finish(mut self, count: usize, clusters: FaceClusters) -> Faces {
-        self.add(&FacePlane::NONE, iter::empty());
-        Faces {
+    fn finish(mut self) -> (Faces, MergedFaces) {
+        let count = self.polygons.len();
+        self.add_plane(&FacePlane::NONE);
+        let faces = Faces {
             polygons: self.polygons.into(),
             count,
             corners: self.corners.into(),
-            clusters,
-        }
+            clusters: OnceLock::new(),
+        };
+        (faces, self.merged)
     }
 }
 

@@ -35,9 +35,8 @@ struct Sides<'a> {
     mesh: &'a HalfEdgeMesh<'a>,
     radius: f64,
     polygons: Vec<Vec<u32>>,
-    /// For each half-edge between polygons: the unit normal of its polygon, and the distance from the edge to
-    /// the nearest other corner.
-    borders: Vec<(DVec3, f64)>,
+    /// For each half-edge between polygons.
+    borders: Vec<SideBorder>,
     /// For each corner of the current polygon, the border half-edge that starts there.
     outgoing: Vec<HalfEdge>,
 }
@@ -50,7 +49,7 @@ impl<'a> Sides<'a> {
             mesh,
             radius,
             polygons: Vec::with_capacity(mesh.triangles.len()),
-            borders: vec![(DVec3::ZERO, 0.0); half_edges],
+            borders: vec![SideBorder::default(); half_edges],
             outgoing: vec![0; points.len()],
         };
         let is_flat: Vec<bool> = (0..half_edges as HalfEdge)
@@ -116,23 +115,9 @@ impl<'a> Sides<'a> {
     fn add(&mut self, triangle: usize, is_flat: &[bool], seen: &mut [bool]) -> Option<()> {
         let border = self.border(triangle, is_flat, seen)?;
         let polygon: Vec<u32> = border.iter().map(|&h| self.mesh.start(h)).collect();
-        let corner = |i: usize| self.points[polygon[i % polygon.len()] as usize];
-        let fan = (1..polygon.len() - 1)
-            .map(|i| (corner(i) - corner(0)).cross(corner(i + 1) - corner(0)));
-        let normal = fan.sum::<DVec3>().try_normalize()?;
-        let height = |i: usize| (corner(i) - corner(0)).dot(normal);
-        let thickness = FLAT_SIDE * self.radius;
-        if (0..polygon.len()).any(|i| height(i).abs() > thickness) {
-            return None;
-        }
+        let normal = side_normal(self.points, &polygon, self.radius)?;
         for (i, &h) in border.iter().enumerate() {
-            let inward = normal.cross(corner(i + 1) - corner(i)).try_normalize()?;
-            let beside = |j: usize| (corner(j) - corner(i)).dot(inward);
-            let nearest = beside(i + 2).min(beside(i + polygon.len() - 1));
-            if nearest <= 0.0 {
-                return None;
-            }
-            self.borders[h as usize] = (normal, nearest);
+            self.borders[h as usize] = SideBorder::new(self.points, &polygon, i, normal)?;
         }
         self.polygons.push(polygon);
         Some(())
@@ -159,30 +144,83 @@ impl<'a> Sides<'a> {
 
     /// Whether the surface bends between two polygons, however these are triangulated.
     fn bends(&self, h: HalfEdge) -> bool {
-        let [(here, nearest_here), (there, nearest_there)] =
-            [h, self.mesh.twin(h)].map(|h| self.borders[h as usize]);
-        let nearest = nearest_here.min(nearest_there);
-        nearest * here.cross(there).length() > BENT_EDGE * self.radius
+        let [here, there] = [h, self.mesh.twin(h)].map(|h| self.borders[h as usize]);
+        here.bends(&there, self.radius)
     }
 }
 
-/// The triangles of a polygon, each starting at its lowest corner. They are cut off from both ends in turn,
-/// so that no corner has many of them.
-fn zigzag(polygon: &[u32]) -> Vec<[u32; 3]> {
+/// The normal of a polygon; `None` if it is not flat.
+pub(super) fn side_normal(points: &[DVec3], polygon: &[u32], radius: f64) -> Option<DVec3> {
+    let first = points[polygon[0] as usize];
+    let from_first = |v: u32| points[v as usize] - first;
+    let fan = polygon[1..]
+        .windows(2)
+        .map(|ends| from_first(ends[0]).cross(from_first(ends[1])));
+    let normal = fan.sum::<DVec3>().try_normalize()?;
+    let thickness = FLAT_SIDE * radius;
+    let is_flat = polygon
+        .iter()
+        .all(|&v| from_first(v).dot(normal).abs() <= thickness);
+    is_flat.then_some(normal)
+}
+
+/// The border of a flat polygon along one of its edges.
+#[derive(Clone, Copy, Default)]
+pub(super) struct SideBorder {
+    /// Of the polygon.
+    normal: DVec3,
+    /// The distance from the edge to the nearest other corner.
+    nearest: f64,
+}
+
+impl SideBorder {
+    /// Along the edge that starts at a corner; `None` if the polygon is not strictly convex there.
+    pub fn new(points: &[DVec3], polygon: &[u32], corner: usize, normal: DVec3) -> Option<Self> {
+        let count = polygon.len();
+        let at = |i: usize| points[polygon[if i < count { i } else { i - count }] as usize];
+        let from = at(corner);
+        let inward = normal.cross(at(corner + 1) - from).try_normalize()?;
+        let beside = |i: usize| (at(i) - from).dot(inward);
+        let nearest = beside(corner + 2).min(beside(corner + count - 1));
+        (nearest > 0.0).then_some(Self { normal, nearest })
+    }
+
+    /// Whether the surface bends between two polygons, however these are triangulated.
+    pub fn bends(&self, other: &Self, radius: f64) -> bool {
+        let nearest = self.nearest.min(other.nearest);
+        nearest * self.normal.cross(other.normal).length() > BENT_EDGE * radius
+    }
+}
+
+/// The triangles of a polygon that begins at its lowest corner, each starting at its lowest corner. They are cut
+/// off from both ends in turn, so that no corner has many of them.
+pub(super) fn zigzag(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let (mut low, mut high) = (0, polygon.len() - 1);
-    let mut triangles = Vec::with_capacity(polygon.len() - 2);
-    while high - low > 1 {
-        let is_low = triangles.len() % 2 == 0;
+    let mut is_low = false;
+    std::iter::from_fn(move || {
+        is_low = !is_low;
         let middle = if is_low { low + 1 } else { high - 1 };
-        let mut triangle = [low, middle, high].map(|i| polygon[i]);
-        let lowest = (0..3).min_by_key(|&i| triangle[i]).unwrap_or(0);
-        triangle.rotate_left(lowest);
-        triangles.push(triangle);
+        let triangle = [low, middle, high].map(|i| polygon[i]);
+        if high - low < 2 {
+            return None;
+        }
         if is_low {
             low = middle;
         } else {
             high = middle;
         }
+        Some(from_lowest(triangle))
+    })
+}
+
+/// A triangle from its lowest corner.
+#[inline]
+pub(super) fn from_lowest([a, b, c]: [u32; 3]) -> [u32; 3] {
+    if a < b && a < c {
+        [a, b, c]
+    } else if b < c {
+        [b, c, a]
+    } else {
+        [c, a, b]
     }
-    triangles
 }

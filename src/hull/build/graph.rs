@@ -1,19 +1,22 @@
 //! The edge graph of a surface.
 
-use std::array;
-
-use super::half_edge::{DirectedEdge, HalfEdgeMesh, triangle};
+use super::half_edge::{DirectedEdge, HalfEdgeMesh};
 use crate::hull::graph::{BLOCK, EdgeGraph, LAST, MARK, NeighborBlock, OVERFLOW, PLATEAU_SEARCH};
 use crate::support::VertexId;
 
 impl NeighborBlock {
     /// From sides that leave a vertex. The `first` fills up unused slots.
+    #[inline]
     fn new(sides: &[DirectedEdge], first: &DirectedEdge, face_of: &[u16]) -> Self {
-        let sides: [&DirectedEdge; BLOCK] = array::from_fn(|i| sides.get(i).unwrap_or(first));
-        Self {
-            to: sides.map(|side| side.to),
-            left: sides.map(|side| face_of[triangle(side.half_edge)]),
+        let left = |side: &DirectedEdge| face_of[usize::from(side.triangle)];
+        let mut block = Self {
+            to: [first.to; BLOCK],
+            left: [left(first); BLOCK],
+        };
+        for (i, side) in sides.iter().take(BLOCK).enumerate() {
+            (block.to[i], block.left[i]) = (side.to, left(side));
         }
+        block
     }
 
     /// With another block after it.
@@ -31,6 +34,9 @@ impl EdgeGraph {
         let blocks = (0..mesh.vertex_count()).map(|v| {
             let around = mesh.outgoing(v as u32);
             let block = |sides| NeighborBlock::new(sides, &around[0], face_of);
+            if around.len() <= BLOCK {
+                return block(around);
+            }
             // From the last block to the first, since each stores the index of the next.
             let last = (around.len() - 2) / LAST;
             (1..=last)

@@ -1,25 +1,46 @@
 //! A closed triangulated surface as half-edges, built in linear time.
 
+use std::mem;
+
 use crate::hull::HullError;
+use crate::hull::faces::FaceCorner;
 
 /// A side of a triangle, from one vertex to the next: number `3 t + k` is side `k` of triangle `t`.
 pub(in crate::hull) type HalfEdge = u32;
 
-/// A half-edge with its end vertex.
+/// A side of a triangle, seen from the vertex that it leaves.
 #[derive(Clone, Copy, Default)]
 pub(in crate::hull) struct DirectedEdge {
     pub to: u16,
-    pub half_edge: HalfEdge,
+    /// The third vertex of the triangle, which is left of the side.
+    pub third: u16,
+    pub triangle: u16,
+    side: u16,
 }
 
-/// Triangles, counter-clockwise seen from outside, that form a topological sphere.
+impl DirectedEdge {
+    #[inline]
+    pub fn half_edge(self) -> HalfEdge {
+        3 * HalfEdge::from(self.triangle) + HalfEdge::from(self.side)
+    }
+
+    /// The previous side of the same triangle.
+    #[inline]
+    fn previous(self) -> HalfEdge {
+        let h = self.half_edge();
+        if self.side == 0 { h + 2 } else { h - 1 }
+    }
+}
+
+/// Triangles, counter-clockwise seen from outside. Around each vertex they form a single fan.
 pub(in crate::hull) struct HalfEdgeMesh<'a> {
     pub triangles: &'a [[u32; 3]],
-    /// The sides that leave vertex `v` are at `first[v]..first[v + 1]`, clockwise seen from outside.
+    /// The sides that leave vertex `v` are at `first[v]..first[v + 1]`, clockwise seen from outside, starting
+    /// with the side to the lowest neighbour.
     sides: Vec<DirectedEdge>,
     first: Vec<u32>,
-    /// The index of each half-edge in `sides`.
-    position: Vec<u32>,
+    /// For each half-edge, its place among the sides that leave its lower vertex.
+    slots: Vec<u16>,
     /// The half-edge of the neighbouring triangle on the same edge.
     twin: Vec<HalfEdge>,
 }
@@ -27,21 +48,25 @@ pub(in crate::hull) struct HalfEdgeMesh<'a> {
 impl<'a> HalfEdgeMesh<'a> {
     /// From triangles over `count` vertices, whose indices must fit into 16 bits.
     pub fn new(count: usize, triangles: &'a [[u32; 3]]) -> Result<Self, HullError> {
-        let (sides, first) = sides_by_start(triangles, count);
+        let mut first = first_sides(triangles, count);
         if let Some(loose) = first.windows(2).position(|pair| pair[0] == pair[1]) {
             return Err(HullError::LooseVertex(loose));
         }
+        // As many triangles as a sphere has.
+        if triangles.len() + 4 != 2 * count {
+            return Err(HullError::NotManifold);
+        }
+        let unsorted = sides_by_start(triangles, &mut first);
         let mut mesh = Self {
             triangles,
-            position: vec![0; sides.len()],
-            twin: vec![0; sides.len()],
-            sides,
+            sides: vec![DirectedEdge::default(); unsorted.len()],
             first,
+            slots: vec![0; unsorted.len()],
+            twin: vec![0; unsorted.len()],
         };
-        if mesh.pair_twins() && mesh.sort_around_vertices() && mesh.is_sphere() {
-            Ok(mesh)
-        } else {
-            Err(HullError::NotManifold)
+        match mesh.sort_around_vertices(&unsorted) {
+            true => Ok(mesh),
+            false => Err(HullError::NotManifold),
         }
     }
 
@@ -71,68 +96,78 @@ impl<'a> HalfEdgeMesh<'a> {
         &self.sides[self.first[v] as usize..self.first[v + 1] as usize]
     }
 
-    /// The slot of an edge among the sides that leave its lower vertex.
-    pub fn edge_slot(&self, h: HalfEdge) -> u16 {
-        let twin = self.twin(h);
-        let outgoing = if self.start(h) < self.start(twin) {
-            h
-        } else {
-            twin
-        };
-        (self.position[outgoing as usize] - self.first[self.start(outgoing) as usize]) as u16
+    /// The sides of a triangle.
+    #[inline]
+    pub fn sides_of(&self, triangle: usize) -> [HalfEdge; 3] {
+        let h = 3 * triangle as HalfEdge;
+        [h, h + 1, h + 2]
     }
 
-    /// Finds the twin of each side. `false` if a side has no twin, or several.
-    fn pair_twins(&mut self) -> bool {
-        const NOWHERE: u32 = u32::MAX;
-        // For each neighbour, the vertex that last had a side to it, and that side.
-        let mut side_to = vec![(NOWHERE, 0); self.vertex_count()];
-        (0..self.vertex_count() as u32).all(|v| {
-            let outgoing = self.first[v as usize] as usize..self.first[v as usize + 1] as usize;
-            let is_single = self.sides[outgoing.clone()].iter().all(|side| {
-                let place = &mut side_to[usize::from(side.to)];
-                std::mem::replace(place, (v, side.half_edge)).0 != v
-            });
-            // The side before an outgoing one in its triangle is an incoming one.
-            is_single
-                && outgoing.into_iter().all(|place| {
-                    let incoming = previous(self.sides[place].half_edge);
-                    let (owner, twin) = side_to[self.start(incoming) as usize];
-                    self.twin[incoming as usize] = twin;
-                    owner == v
-                })
+    /// The corners of all triangles.
+    pub fn corners(&self) -> impl Iterator<Item = [FaceCorner; 3]> {
+        let (slots, _) = self.slots.as_chunks();
+        let triangles = self.triangles.iter().zip(slots);
+        triangles.map(|(&[a, b, c], &[at_a, at_b, at_c])| {
+            [(a, at_a), (b, at_b), (c, at_c)].map(|(vertex, slot)| FaceCorner {
+                vertex: vertex as u16,
+                slot,
+            })
         })
     }
 
-    /// Sorts the sides around each vertex, starting with the side to the lowest neighbour. `false` if the
-    /// triangles around a vertex are not a single fan.
-    fn sort_around_vertices(&mut self) -> bool {
-        (0..self.vertex_count()).all(|v| {
-            let [start, end] = [v, v + 1].map(|v| self.first[v] as usize);
-            let lowest = self.sides[start..end].iter().min_by_key(|side| side.to);
-            let first = lowest.map_or(0, |side| side.half_edge);
-            let mut h = first;
-            for place in start..end {
-                if h == first && place > start {
+    /// The corner of a polygon from which a side starts.
+    #[inline]
+    pub fn corner(&self, side: HalfEdge) -> FaceCorner {
+        FaceCorner {
+            vertex: self.start(side) as u16,
+            slot: self.slots[side as usize],
+        }
+    }
+
+    /// Sorts the sides around each vertex, and so finds their twins. `false` if the triangles around a vertex
+    /// are not a single fan.
+    fn sort_around_vertices(&mut self, unsorted: &[DirectedEdge]) -> bool {
+        // For each neighbour, the side whose triangle is right of the way to it.
+        let mut right = vec![0_u32; self.vertex_count()];
+        let mut sides = self.sides.as_mut_slice();
+        (0..).zip(self.first.windows(2)).all(|(v, ends)| {
+            let (start, count) = (ends[0], (ends[1] - ends[0]) as usize);
+            let mut lowest = (u16::MAX, start);
+            for (place, side) in (start..).zip(&unsorted[start as usize..][..count]) {
+                right[usize::from(side.third)] = place;
+                if side.to < lowest.0 {
+                    lowest = (side.to, place);
+                }
+            }
+            let mut place = lowest.1;
+            let mut side = unsorted[place as usize];
+            let (around, others) = mem::take(&mut sides).split_at_mut(count);
+            sides = others;
+            for (slot, sorted) in (0..).zip(around) {
+                let next = right[usize::from(side.to)];
+                let beside = unsorted[next as usize];
+                // Otherwise this was written for an earlier vertex, or never.
+                let is_beside = next >= start && beside.third == side.to;
+                if !is_beside || (slot > 0 && place == lowest.1) {
                     return false;
                 }
-                self.sides[place] = DirectedEdge {
-                    to: self.end(h) as u16,
-                    half_edge: h,
-                };
-                self.position[h as usize] = place as u32;
-                h = next(self.twin(h));
+                *sorted = side;
+                if v < side.to {
+                    let [here, there] = [side.half_edge(), beside.previous()];
+                    for (h, twin) in [(here, there), (there, here)] {
+                        let h = h as usize;
+                        (self.slots[h], self.twin[h]) = (slot, twin);
+                    }
+                }
+                (place, side) = (next, beside);
             }
-            h == first
+            place == lowest.1
         })
     }
 
-    /// Whether the surface is connected and has the Euler characteristic of a sphere.
-    fn is_sphere(&self) -> bool {
+    /// Whether the surface is connected.
+    pub fn is_connected(&self) -> bool {
         let count = self.vertex_count();
-        if self.triangles.len() + 4 != 2 * count {
-            return false;
-        }
         let mut seen = vec![false; count];
         let mut stack = vec![0];
         seen[0] = true;
@@ -140,7 +175,7 @@ impl<'a> HalfEdgeMesh<'a> {
         while let Some(v) = stack.pop() {
             reached += 1;
             for side in self.outgoing(v) {
-                if !std::mem::replace(&mut seen[side.to as usize], true) {
+                if !mem::replace(&mut seen[side.to as usize], true) {
                     stack.push(side.to.into());
                 }
             }
@@ -155,40 +190,46 @@ pub(in crate::hull) fn next(h: HalfEdge) -> HalfEdge {
     if h % 3 == 2 { h - 2 } else { h + 1 }
 }
 
-/// The previous side of the same triangle.
-#[inline]
-fn previous(h: HalfEdge) -> HalfEdge {
-    if h.is_multiple_of(3) { h + 2 } else { h - 1 }
-}
-
 #[inline]
 pub(in crate::hull) fn triangle(h: HalfEdge) -> usize {
     h as usize / 3
 }
 
-/// The sides of all triangles, sorted by the vertex that they leave (a counting sort), and the first side of
-/// each vertex.
-fn sides_by_start(triangles: &[[u32; 3]], count: usize) -> (Vec<DirectedEdge>, Vec<u32>) {
-    let starts = triangles.as_flattened();
-    // The offsets are one entry too far. Filling moves each to its final value.
-    let mut first = vec![0; count + 2];
-    for &from in starts {
-        first[from as usize + 2] += 1;
+/// Where the sides that leave each vertex begin, and where the last ones end.
+fn first_sides(triangles: &[[u32; 3]], count: usize) -> Vec<u32> {
+    let mut first = vec![0; count + 1];
+    for &from in triangles.as_flattened() {
+        first[from as usize + 1] += 1;
     }
-    for v in 2..first.len() {
-        first[v] += first[v - 1];
+    let mut end = 0;
+    for place in &mut first {
+        end += *place;
+        *place = end;
     }
-    let mut sides = vec![DirectedEdge::default(); starts.len()];
-    for (t, &[a, b, c]) in (0..).zip(triangles) {
-        for (half_edge, from, to) in [(3 * t, a, b), (3 * t + 1, b, c), (3 * t + 2, c, a)] {
-            let place = &mut first[from as usize + 1];
+    first
+}
+
+/// The sides of all triangles, sorted by the vertex that they leave (a counting sort).
+fn sides_by_start(triangles: &[[u32; 3]], first: &mut [u32]) -> Vec<DirectedEdge> {
+    let mut sides = vec![DirectedEdge::default(); 3 * triangles.len()];
+    // From the last to the first: each vertex's place moves from the end of its sides to their beginning.
+    let ends = &mut first[1..];
+    for (t, &[a, b, c]) in triangles.iter().enumerate().rev() {
+        for (side, [from, to, third]) in [(2, [c, a, b]), (1, [b, c, a]), (0, [a, b, c])] {
+            let place = &mut ends[from as usize];
+            *place -= 1;
             sides[*place as usize] = DirectedEdge {
                 to: to as u16,
-                half_edge,
+                third: third as u16,
+                triangle: t as u16,
+                side,
             };
-            *place += 1;
         }
     }
-    first.pop();
-    (sides, first)
+    // Now each entry is where the sides of the vertex before it begin.
+    first.rotate_left(1);
+    if let Some(end) = first.last_mut() {
+        *end = sides.len() as u32;
+    }
+    sides
 }

@@ -1,6 +1,7 @@
 //! Building hulls: from points, from triangles, and from parry's polyhedra.
 
-mod clusters;
+mod area_vectors;
+mod bends;
 mod face_loops;
 mod face_plane;
 mod faces;
@@ -8,6 +9,7 @@ mod flat_edges;
 mod flat_sides;
 mod graph;
 pub(super) mod half_edge;
+pub(crate) mod identity;
 mod morton;
 mod orientation;
 pub(crate) mod polyhedron;

@@ -9,8 +9,9 @@ use std::cmp::Ordering;
 use glam::{DVec2, DVec3, Vec3};
 use parry3d::shape::ConvexPolyhedron;
 
-use super::face_loops::FaceTriangles;
+use super::face_loops::{FaceTriangles, has_flat_sides, triangles_of_flat_sides};
 use super::flat_sides;
+use super::identity::Diagonals;
 use super::validate::MAX_VERTICES;
 use crate::hull::{Hull, HullError};
 use crate::tolerance::FLAT_EDGE;
@@ -35,7 +36,7 @@ pub(crate) fn hull_and_diagonals(
     // All points are vertices, except those inside flat sides: a hull builder would keep too many of these,
     // and take seconds.
     if points.len() > MAX_VERTICES {
-        return (Err(HullError::TooManyPoints), Diagonals(Box::default()));
+        return (Err(HullError::TooManyPoints), Diagonals::default());
     }
     match hull_of_surface(polyhedron) {
         Some((hull, diagonals)) => (Ok(hull), diagonals),
@@ -46,24 +47,40 @@ pub(crate) fn hull_and_diagonals(
 /// The same without a detour over the points: `None` if the surface is no convex triangulation of them.
 pub(crate) fn hull_of_surface(polyhedron: &ConvexPolyhedron) -> Option<(Hull, Diagonals)> {
     let points = polyhedron.points();
+    if has_flat_sides(polyhedron)
+        && let Some(hull) = of_flat_sides(polyhedron)
+    {
+        return Some((hull, Diagonals::default()));
+    }
     let faces = FaceTriangles::of(polyhedron);
     if let Some(faces) = &faces
         && let Some(hull) = of_faces(points, faces)
     {
-        return Some((hull, Diagonals(Box::default())));
+        return Some((hull, Diagonals::default()));
     }
     let surface = Triangulation::of(polyhedron)?;
     if faces.is_none()
         && !surface.flat_edges.is_empty()
         && let Some(hull) = with_own_diagonals(points, &surface.triangles, surface.radius)
     {
-        return Some((hull, Diagonals(Box::default())));
+        return Some((hull, Diagonals::default()));
     }
     let hull = Hull::from_reordered_triangles(points.to_vec(), &surface.triangles).ok()?;
     Some((
         hull,
         Diagonals::of(polyhedron, surface.flat_edges.into_iter()),
     ))
+}
+
+/// The hull, if the faces are its flat sides.
+fn of_flat_sides(polyhedron: &ConvexPolyhedron) -> Option<Hull> {
+    let points = polyhedron.points();
+    if !points.iter().all(|p| p.is_finite()) {
+        return None;
+    }
+    let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
+    let triangles = triangles_of_flat_sides(polyhedron, &exact, around_middle(points).1)?;
+    Hull::from_reordered_triangles(points.to_vec(), &triangles).ok()
 }
 
 /// The hull, if it depends only on the points: each edge bends, or is a diagonal of a flat side.
@@ -91,70 +108,6 @@ fn around_middle(points: &[Vec3]) -> (DVec3, f64) {
     let middle = points.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / points.len() as f64;
     let squares = points.iter().map(|p| p.as_dvec3().distance_squared(middle));
     (middle, squares.fold(0.0, f64::max).sqrt())
-}
-
-/// A hash of the points and edges of a polyhedron, which determine its hull.
-pub(crate) fn fingerprint(polyhedron: &ConvexPolyhedron) -> u64 {
-    let mix = |hash: u64, word: u64| {
-        let mixed = (hash ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        mixed ^ mixed >> 32
-    };
-    let coordinates = bytemuck::cast_slice::<Vec3, u32>(polyhedron.points());
-    let points = coordinates.iter().map(|&bits| u64::from(bits));
-    let edges = polyhedron.edges().iter().map(|edge| {
-        let [a, b] = edge.vertices.map(u64::from);
-        a << 32 | b
-    });
-    points.chain(edges).fold(0, mix)
-}
-
-/// The edges that a hull depends on besides its points: their ids and their ends.
-///
-/// Edges across which the surface bends are in every triangulation of the points. The others could have been
-/// the other diagonal of their two triangles.
-#[derive(Debug)]
-pub(crate) struct Diagonals(Box<[(u32, [u32; 2])]>);
-
-impl Diagonals {
-    fn of(polyhedron: &ConvexPolyhedron, ids: impl Iterator<Item = u32>) -> Self {
-        let ends = |id: u32| polyhedron.edges()[id as usize].vertices;
-        Self(ids.map(|id| (id, ends(id))).collect())
-    }
-
-    fn all(polyhedron: &ConvexPolyhedron) -> Self {
-        Self::of(polyhedron, 0..polyhedron.edges().len() as u32)
-    }
-
-    /// Whether a polyhedron with the same points has the same hull.
-    #[inline]
-    pub fn are_of(&self, polyhedron: &ConvexPolyhedron) -> bool {
-        self.0.is_empty() || self.are_among_edges_of(polyhedron)
-    }
-
-    #[inline(never)]
-    fn are_among_edges_of(&self, polyhedron: &ConvexPolyhedron) -> bool {
-        let edges = polyhedron.edges();
-        self.0.iter().all(|&(id, ends)| {
-            let edge = edges.get(id as usize);
-            edge.is_some_and(|edge| edge.vertices == ends)
-        })
-    }
-
-    pub fn heap_bytes(&self) -> usize {
-        size_of_val(&*self.0)
-    }
-}
-
-/// Whether two polyhedra have the same points and edges, so that their hulls are the same.
-pub(crate) fn same_polyhedron(a: &ConvexPolyhedron, b: &ConvexPolyhedron) -> bool {
-    let [edges_a, edges_b] = [a, b].map(|p| p.edges().iter().map(|edge| edge.vertices));
-    same_points(a.points(), b.points()) && edges_a.eq(edges_b)
-}
-
-/// Whether two lists of points are bitwise equal, in one comparison of memory.
-#[inline]
-pub(crate) fn same_points(a: &[Vec3], b: &[Vec3]) -> bool {
-    bytemuck::cast_slice::<Vec3, u8>(a) == bytemuck::cast_slice::<Vec3, u8>(b)
 }
 
 /// The triangles of a polyhedron, counter-clockwise from outside; `None` if they are ambiguous.

@@ -4,7 +4,8 @@ use std::cmp::Reverse;
 
 use glam::DVec3;
 
-use super::flat_edges::{AreaVectors, NearlyFlatEdges};
+use super::area_vectors::AreaVectors;
+use super::flat_edges::NearlyFlatEdges;
 use super::half_edge::{HalfEdge, HalfEdgeMesh, next, triangle};
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS};
 
@@ -13,16 +14,16 @@ pub(super) struct CoplanarRegions {
     /// The triangles, region by region, and the first triangle of each region.
     triangles: Vec<u32>,
     first: Vec<usize>,
-    /// The region of each triangle.
-    pub of: Vec<u32>,
+    /// The region of each triangle; empty if all are alone.
+    of: Vec<u32>,
 }
 
-/// Not yet in a region.
+/// In no region: alone, or not yet.
 const FREE: u32 = u32::MAX;
 
 impl CoplanarRegions {
     /// Grows regions over flat edges, starting from the largest triangles, whose normals are the most
-    /// reliable. The triangles without a flat edge come last.
+    /// reliable.
     pub fn grow(
         points: &[DVec3],
         mesh: &HalfEdgeMesh<'_>,
@@ -30,26 +31,26 @@ impl CoplanarRegions {
         flat: &NearlyFlatEdges,
         radius: f64,
     ) -> Self {
+        if flat.is_empty() {
+            return Self::alone(0);
+        }
         let count = mesh.triangles.len();
-        let mut regions = Self {
-            triangles: Vec::with_capacity(count),
-            first: Vec::with_capacity(count + 1),
-            of: vec![FREE; count],
-        };
-        regions.first.push(0);
+        let mut regions = Self::alone(count);
         // Whether a triangle lies in the plane of some others.
         let joins = |some: &[u32]| {
             let (normal, center) = plane(points, mesh.triangles, surface, some);
             move |t: usize| {
                 // The normal of a sliver is mere rounding, so its neighbours decide.
-                let turned = normal.dot(surface.vectors[t]) < FACE_ANGLE_COS * surface.areas[t];
+                let triangle = &surface.triangles[t];
+                let turned = normal.dot(triangle.vector) < FACE_ANGLE_COS * triangle.area;
                 let height = |v: u32| normal.dot(points[v as usize] - center);
                 let is_near = |&v: &u32| height(v).abs() <= FACE_FLATNESS * radius;
-                (!turned || surface.is_sliver[t]) && mesh.triangles[t].iter().all(is_near)
+                (!turned || surface.is_sliver(points, mesh.triangles, t, radius))
+                    && mesh.triangles[t].iter().all(is_near)
             }
         };
         let is_beside = |t: &u32| (3 * t..3 * t + 3).any(|side| flat.contains(side));
-        for seed in largest_first(&surface.areas, (0..count as u32).filter(is_beside)) {
+        for seed in largest_first(surface, (0..count as u32).filter(is_beside)) {
             if regions.of[seed as usize] != FREE {
                 continue;
             }
@@ -60,19 +61,25 @@ impl CoplanarRegions {
                 regions.add(mesh, flat, seed, joins(&found));
             }
         }
-        regions.add_single();
         regions
     }
 
-    /// Makes a region of each triangle that is in none.
-    fn add_single(&mut self) {
-        for t in 0..self.of.len() {
-            if self.of[t] == FREE {
-                self.of[t] = self.next_id();
-                self.triangles.push(t as u32);
-                self.first.push(self.triangles.len());
-            }
+    /// No region yet of so many triangles.
+    fn alone(count: usize) -> Self {
+        let mut first = Vec::with_capacity(count + 1);
+        first.push(0);
+        Self {
+            triangles: Vec::with_capacity(count),
+            first,
+            of: vec![FREE; count],
         }
+    }
+
+    /// The region of a triangle, unless it is alone.
+    #[inline]
+    pub fn of(&self, triangle: usize) -> Option<usize> {
+        let region = *self.of.get(triangle)?;
+        (region != FREE).then_some(region as usize)
     }
 
     /// Adds a region: the triangles that are connected with `seed` by flat edges and lie in its plane.
@@ -160,9 +167,12 @@ impl CoplanarRegions {
 }
 
 /// Some triangles, the largest first.
-fn largest_first(areas: &[f64], triangles: impl Iterator<Item = u32>) -> impl Iterator<Item = u32> {
+fn largest_first(
+    surface: &AreaVectors,
+    triangles: impl Iterator<Item = u32>,
+) -> impl Iterator<Item = u32> {
     // The bits of non-negative numbers sort as the numbers do.
-    let with_size = |t: u32| (Reverse(areas[t as usize].to_bits()), t);
+    let with_size = |t: u32| (Reverse(surface.triangles[t as usize].area.to_bits()), t);
     let mut triangles: Vec<_> = triangles.map(with_size).collect();
     triangles.sort_unstable();
     triangles.into_iter().map(|(_, triangle)| triangle)
@@ -178,8 +188,8 @@ fn plane(
     let (mut normal, mut moment, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for &t in some {
         let [a, b, c] = triangles[t as usize].map(|v| points[v as usize]);
-        let weight = surface.areas[t as usize];
-        normal += surface.vectors[t as usize];
+        let weight = surface.triangles[t as usize].area;
+        normal += surface.triangles[t as usize].vector;
         moment += (a + b + c) * (weight / 3.0);
         area += weight;
     }

@@ -2,11 +2,12 @@
 
 use glam::{DVec3, Vec3};
 
-use super::flat_edges::AreaVectors;
+use super::area_vectors::AreaVectors;
+use super::bends::Bends;
 use super::half_edge::HalfEdgeMesh;
 use super::validate::{
-    Bends, MAX_VERTICES, center_and_radius, validate_convex, validate_distinct, validate_finite,
-    validate_no_bowl, validate_single_layer, validate_triangles,
+    MAX_VERTICES, center_and_radius, validate_distinct, validate_finite, validate_no_bowl,
+    validate_single_layer, validate_triangles,
 };
 use crate::hull::climb::{self, HillClimb};
 use crate::hull::faces::Faces;
@@ -25,10 +26,33 @@ pub(super) struct Surface<'a> {
     /// The points in f64: they are converted once.
     exact: Vec<DVec3>,
     mesh: HalfEdgeMesh<'a>,
+    measures: Measures,
+}
+
+/// What is measured of a surface while it is checked.
+struct Measures {
     areas: AreaVectors,
     bends: Bends,
     center: DVec3,
     radius: f64,
+    /// Whether it goes around its centre once without any fold. Then it is connected, and has no vertex twice.
+    wraps_once: bool,
+}
+
+impl Measures {
+    fn new(points: &[DVec3], mesh: &HalfEdgeMesh<'_>) -> Result<Self, HullError> {
+        let areas = AreaVectors::new(points, mesh.triangles);
+        let (center, radius) = center_and_radius(points, &areas)?;
+        let bends = Bends::new(points, mesh, &areas, radius)?;
+        let wraps_once = validate_single_layer(points, mesh.triangles, &areas, center, radius)?;
+        Ok(Self {
+            areas,
+            bends,
+            center,
+            radius,
+            wraps_once,
+        })
+    }
 }
 
 impl<'a> Surface<'a> {
@@ -41,33 +65,43 @@ impl<'a> Surface<'a> {
         }
         validate_finite(&points)?;
         validate_triangles(&points, triangles)?;
-        validate_distinct(&points)?;
-        let mesh = HalfEdgeMesh::new(points.len(), triangles)?;
         let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
-        let (center, radius) = center_and_radius(&exact, triangles)?;
-        let areas = AreaVectors::new(&exact, triangles, radius);
-        let bends = validate_convex(&exact, &mesh, &areas, radius)?;
-        validate_single_layer(&exact, triangles, &areas, center, radius)?;
+        let mesh = HalfEdgeMesh::new(points.len(), triangles);
+        let measures = match &mesh {
+            Ok(mesh) => Measures::new(&exact, mesh),
+            Err(error) => Err(*error),
+        };
+        // What is wrong is named by its cause, which is looked for last.
+        if !measures.as_ref().is_ok_and(|measures| measures.wraps_once) {
+            validate_distinct(&points)?;
+        }
+        let mesh = mesh?;
+        if !measures.as_ref().is_ok_and(|measures| measures.wraps_once) && !mesh.is_connected() {
+            return Err(HullError::NotManifold);
+        }
         Ok(Self {
             points,
             exact,
             mesh,
-            areas,
-            bends,
-            center,
-            radius,
+            measures: measures?,
         })
     }
 
     /// Whether the surface bends at every edge, so that its points have no other triangulation.
     pub fn bends_everywhere(&self) -> bool {
-        self.bends.everywhere
+        self.measures.bends.everywhere()
     }
 
     pub fn into_hull(self) -> Result<Hull, HullError> {
-        let (points, mesh, bends) = (self.points, self.mesh, self.bends);
-        let (exact, center, radius) = (self.exact, self.center, self.radius);
-        let (mut faces, merged) = Faces::new(&exact, &mesh, &self.areas, &bends.is_steep, radius);
+        let (points, exact, mesh) = (self.points, self.exact, self.mesh);
+        let Measures {
+            areas,
+            bends,
+            center,
+            radius,
+            ..
+        } = self.measures;
+        let (faces, merged) = Faces::new(&exact, &mesh, &areas, &bends, radius);
         let mut graph = EdgeGraph::new(&mesh, &merged.face_of);
         let climb = HillClimb {
             points: &points,
@@ -76,10 +110,9 @@ impl<'a> Surface<'a> {
             radius,
         };
         validate_no_bowl(climb, &faces, &merged.overtopped)?;
-        faces.add_clusters(&exact, &graph, &merged);
         if points.len() > scan::LARGEST {
             graph.mark_plateau_search(|graph, v| {
-                bends.at_flat_edge[v.index()] || climb::has_short_edge(&exact, graph, radius, v)
+                bends.is_at_flat_edge(v.index()) || climb::has_short_edge(&exact, graph, radius, v)
             });
         }
         let hull = Hull {

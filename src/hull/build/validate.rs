@@ -2,13 +2,12 @@
 
 use glam::{DVec3, Vec3};
 
-use super::flat_edges::{AreaVectors, longest_side};
-use super::half_edge::{HalfEdgeMesh, next, triangle};
+use super::area_vectors::{AreaVectors, longest_side};
 use crate::hull::HullError;
 use crate::hull::climb::{self, HillClimb};
 use crate::hull::faces::Faces;
 use crate::support::FaceId;
-use crate::tolerance::{BOWL, FLAT_EDGE, MAX_DENT, MAX_INWARD_HEIGHT, MIN_EXTENT, STEEP_EDGE};
+use crate::tolerance::{BOWL, MAX_INWARD_HEIGHT, MIN_EXTENT};
 
 /// The largest number of vertices of a hull: the ids of its at most `2 n - 4` faces must fit into 16 bits.
 pub(super) const MAX_VERTICES: usize = 32_768;
@@ -62,88 +61,27 @@ fn hash(point: Vec3) -> usize {
 /// The centre of volume, and the largest distance of a vertex from it.
 pub(super) fn center_and_radius(
     points: &[DVec3],
-    triangles: &[[u32; 3]],
+    surface: &AreaVectors,
 ) -> Result<(DVec3, f64), HullError> {
     let origin = points[0];
-    let (mut volume, mut moment) = (0.0, DVec3::ZERO);
-    for triangle in triangles {
-        let [a, b, c] = triangle.map(|v| points[v as usize] - origin);
-        let v = a.dot(b.cross(c));
-        volume += v;
-        moment += (a + b + c) * v;
-    }
     let farthest = |from: DVec3| {
         let distances = points.iter().map(|p| (*p - from).length_squared());
-        distances.fold(0.0, f64::max).sqrt()
+        // No value is NaN here, so the NaN check of `f64::max` is not needed.
+        distances
+            .fold(0.0, |a: f64, b| if a > b { a } else { b })
+            .sqrt()
     };
     // For a flat surface, rounding decides the sign.
-    if volume < -MIN_EXTENT * farthest(origin).powi(3) {
-        return Err(HullError::InsideOut);
+    if surface.volume <= 0.0 {
+        let is_flat = surface.volume >= -MIN_EXTENT * farthest(origin).powi(3);
+        return Err(if is_flat {
+            HullError::Flat
+        } else {
+            HullError::InsideOut
+        });
     }
-    if volume <= 0.0 {
-        return Err(HullError::Flat);
-    }
-    let center = origin + moment / (4.0 * volume);
+    let center = origin + surface.moment / (4.0 * surface.volume);
     Ok((center, farthest(center)))
-}
-
-/// Refuses edges that are dents, beyond rounding. A closed surface in a single layer is convex if it is
-/// convex at every edge. Returns how much it bends.
-///
-/// The depth of a dent is how far its edge passes beneath the other diagonal of its two triangles. (Heights
-/// over the planes of the triangles mean nothing if these are slivers.)
-pub(super) fn validate_convex(
-    points: &[DVec3],
-    mesh: &HalfEdgeMesh<'_>,
-    surface: &AreaVectors,
-    radius: f64,
-) -> Result<Bends, HullError> {
-    let mut bends = Bends {
-        at_flat_edge: vec![false; points.len()],
-        is_steep: vec![true; points.len()],
-        everywhere: true,
-    };
-    let at = |v: u32| points[v as usize];
-    for h in 0..3 * mesh.triangles.len() as u32 {
-        let twin = mesh.twin(h);
-        if h < twin {
-            let ends = [mesh.start(h), mesh.end(h)];
-            let [third, opposite] = [h, twin].map(|h| mesh.end(next(h)));
-            let ([a, b], c, d) = (ends.map(at), at(third), at(opposite));
-            let rise = (b - a).cross(c - a).dot(d - a);
-            let [one, other] = [h, twin].map(|h| surface.areas[triangle(h)]);
-            let area = if one > other { one } else { other };
-            // The two diagonals span at most both areas, so such an edge is far from a dent.
-            if -rise > STEEP_EDGE * radius * area {
-                continue;
-            }
-            bends.is_steep[ends[0] as usize] = false;
-            bends.is_steep[ends[1] as usize] = false;
-            // Twice, since the centre may be anywhere.
-            bends.everywhere &= -rise > 2.0 * FLAT_EDGE * radius * area;
-            let across = (b - a).cross(d - c);
-            let rounding = MAX_DENT * radius * across.length();
-            if rise > rounding {
-                return Err(HullError::NotConvex(opposite as usize));
-            }
-            if rise >= -rounding {
-                for v in ends.into_iter().chain([third, opposite]) {
-                    bends.at_flat_edge[v as usize] = true;
-                }
-            }
-        }
-    }
-    Ok(bends)
-}
-
-/// How much a surface bends at its edges.
-pub(super) struct Bends {
-    /// The vertices of two triangles that are flat up to rounding.
-    pub at_flat_edge: Vec<bool>,
-    /// The vertices at which all edges are steep: no neighbour of theirs is as high as the planes around them.
-    pub is_steep: Vec<bool>,
-    /// Whether no edge is a [`FLAT_EDGE`], whatever point inside the radius is measured from.
-    pub everywhere: bool,
 }
 
 /// Refuses faces with much of the hull in front of their plane. Each edge of a bowl is a dent within
@@ -170,29 +108,51 @@ pub(super) fn validate_no_bowl(
 /// All edges of a fold may be convex, and so may be all edges of two connected layers. Hull builders that
 /// work in f32 leave such surfaces on needles, whose cross-section they mistake for rounding. A climb would
 /// be trapped there, far below the top.
+///
+/// Whether the ray leaves exactly once, and no triangle faces the centre. Then the surface is connected, and no
+/// two vertices are at the same place.
 pub(super) fn validate_single_layer(
     points: &[DVec3],
     triangles: &[[u32; 3]],
     surface: &AreaVectors,
     center: DVec3,
     radius: f64,
-) -> Result<(), HullError> {
-    let mut crossings = 0;
-    for (&triangle, (&normal, &area)) in triangles
-        .iter()
-        .zip(surface.vectors.iter().zip(&surface.areas))
-    {
-        let [a, b, c] = triangle.map(|v| points[v as usize] - center);
-        let is_sliver = || area <= MAX_INWARD_HEIGHT * radius * longest_side(points, triangle);
-        let is_fold = normal.dot(a) < 0.0 && !is_sliver();
-        // The ray passes on the left of the sides.
-        let passes = |from: DVec3, to: DVec3| from.cross(to).dot(TEST_RAY) > 0.0;
-        crossings += u32::from(passes(a, b) && passes(b, c) && passes(c, a));
-        if is_fold || crossings > 1 {
-            return Err(HullError::NotConvex(triangle[0] as usize));
+) -> Result<bool, HullError> {
+    let (x, y) = TEST_RAY.normalize().any_orthonormal_pair();
+    let seen_from_ray = |p: &DVec3| quadrant((*p - center).dot(x), (*p - center).dot(y));
+    let quadrants: Vec<u8> = points.iter().map(seen_from_ray).collect();
+    let (mut crossings, mut some_inward) = (0, false);
+    for (triangle, vector) in triangles.iter().zip(&surface.triangles) {
+        let outward = vector.vector.dot(points[triangle[0] as usize] - center);
+        if outward <= 0.0 {
+            some_inward = true;
+            let height = MAX_INWARD_HEIGHT * radius;
+            let is_sliver = || vector.area <= height * longest_side(points, *triangle);
+            if outward < 0.0 && !is_sliver() {
+                return Err(HullError::NotConvex(triangle[0] as usize));
+            }
+        }
+        let [a, b, c] = triangle.map(|v| quadrants[v as usize]);
+        // A triangle on one side of a plane through the ray does not meet it.
+        if a & b & c == 0 && meets_ray(triangle.map(|v| points[v as usize] - center)) {
+            crossings += 1;
+            if crossings > 1 {
+                return Err(HullError::NotConvex(triangle[0] as usize));
+            }
         }
     }
-    Ok(())
+    Ok(crossings == 1 && !some_inward)
+}
+
+/// On which sides of two planes through the test ray a point lies, with some distance.
+fn quadrant(x: f64, y: f64) -> u8 {
+    u8::from(x > 0.0) | u8::from(x < 0.0) << 1 | u8::from(y > 0.0) << 2 | u8::from(y < 0.0) << 3
+}
+
+/// Whether the test ray passes on the left of all sides of a triangle.
+fn meets_ray([a, b, c]: [DVec3; 3]) -> bool {
+    let passes = |from: DVec3, to: DVec3| from.cross(to).dot(TEST_RAY) > 0.0;
+    passes(a, b) && passes(b, c) && passes(c, a)
 }
 
 /// A direction in which a hull is unlikely to have an edge.

@@ -11,7 +11,8 @@ use glam::Vec3;
 use parry3d::shape::ConvexPolyhedron;
 
 use crate::hull::Hull;
-use crate::hull::build::polyhedron::{Diagonals, fingerprint, hull_and_diagonals, same_points};
+use crate::hull::build::identity::{Diagonals, fingerprint, same_points};
+use crate::hull::build::polyhedron::hull_and_diagonals;
 use crate::parry::hull_cache::digest::Digest;
 
 /// The prepared hull of a polyhedron. [`matches`](Self::matches) verifies whether it belongs to a given one.
@@ -23,6 +24,8 @@ pub(crate) struct PreparedHull {
     diagonals: Diagonals,
     /// The fingerprint of the polyhedron.
     key: u64,
+    /// What it takes as it is prepared, without what a few hulls need later.
+    bytes: usize,
 }
 
 /// How the points from which it was built are recognised.
@@ -33,6 +36,16 @@ enum PointIdentity {
     /// They are the points of the hull.
     Hull,
     Points(Box<[Vec3]>),
+}
+
+impl PointIdentity {
+    fn heap_bytes(&self) -> usize {
+        match self {
+            Self::Points(points) => size_of_val(&**points),
+            Self::Digest(_) => size_of::<Digest>(),
+            Self::Hull => 0,
+        }
+    }
 }
 
 impl PreparedHull {
@@ -62,11 +75,16 @@ impl PreparedHull {
             None if own.is_some_and(|own| same_points(own, points)) => PointIdentity::Hull,
             None => PointIdentity::Points(points.into()),
         };
+        let bytes = size_of::<Self>()
+            + hull.as_ref().map_or(0, Hull::heap_bytes)
+            + source.heap_bytes()
+            + diagonals.heap_bytes();
         Self {
             hull,
             source,
             diagonals,
             key,
+            bytes,
         }
     }
 
@@ -99,14 +117,9 @@ impl PreparedHull {
         self.hull.as_ref()
     }
 
+    #[inline]
     pub fn bytes(&self) -> usize {
-        let hull = self.hull.as_ref().map_or(0, Hull::heap_bytes);
-        let source = match &self.source {
-            PointIdentity::Points(points) => size_of_val(&**points),
-            PointIdentity::Digest(_) => size_of::<Digest>(),
-            PointIdentity::Hull => 0,
-        };
-        size_of::<Self>() + hull + source + self.diagonals.heap_bytes()
+        self.bytes
     }
 
     /// Drops the hulls that no thread uses any more.

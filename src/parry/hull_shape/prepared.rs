@@ -7,7 +7,7 @@ use parry3d::shape::{Compound, CompoundFlags, ConvexPolyhedron, SharedShape};
 
 use super::HullShape;
 use crate::hull::HullError;
-use crate::hull::build::polyhedron::{fingerprint, same_polyhedron};
+use crate::hull::build::identity::{fingerprint, same_polyhedron};
 
 /// Replaces plain hulls by [`HullShape`]s, including parts of compounds, for worlds that were loaded or built
 /// by others. Colliders that share a shape, or have equal hulls, share the new one: in a loaded world each

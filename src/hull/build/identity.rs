@@ -1,0 +1,68 @@
+//! How a polyhedron is recognised from which a hull was built.
+
+use glam::Vec3;
+use parry3d::shape::ConvexPolyhedron;
+
+/// A hash of the points and edges of a polyhedron, which determine its hull.
+pub(crate) fn fingerprint(polyhedron: &ConvexPolyhedron) -> u64 {
+    let mix = |hash: u64, word: u64| {
+        let mixed = (hash ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        mixed ^ mixed >> 32
+    };
+    let coordinates = bytemuck::cast_slice::<Vec3, u32>(polyhedron.points());
+    let points = coordinates.iter().map(|&bits| u64::from(bits));
+    let edges = polyhedron.edges().iter().map(|edge| {
+        let [a, b] = edge.vertices.map(u64::from);
+        a << 32 | b
+    });
+    points.chain(edges).fold(0, mix)
+}
+
+/// The edges that a hull depends on besides its points: their ids and their ends.
+///
+/// Edges across which the surface bends are in every triangulation of the points. The others could have been
+/// the other diagonal of their two triangles.
+#[derive(Debug, Default)]
+pub(crate) struct Diagonals(Box<[(u32, [u32; 2])]>);
+
+impl Diagonals {
+    pub(super) fn of(polyhedron: &ConvexPolyhedron, ids: impl Iterator<Item = u32>) -> Self {
+        let ends = |id: u32| polyhedron.edges()[id as usize].vertices;
+        Self(ids.map(|id| (id, ends(id))).collect())
+    }
+
+    pub(super) fn all(polyhedron: &ConvexPolyhedron) -> Self {
+        Self::of(polyhedron, 0..polyhedron.edges().len() as u32)
+    }
+
+    /// Whether a polyhedron with the same points has the same hull.
+    #[inline]
+    pub fn are_of(&self, polyhedron: &ConvexPolyhedron) -> bool {
+        self.0.is_empty() || self.are_among_edges_of(polyhedron)
+    }
+
+    #[inline(never)]
+    fn are_among_edges_of(&self, polyhedron: &ConvexPolyhedron) -> bool {
+        let edges = polyhedron.edges();
+        self.0.iter().all(|&(id, ends)| {
+            let edge = edges.get(id as usize);
+            edge.is_some_and(|edge| edge.vertices == ends)
+        })
+    }
+
+    pub fn heap_bytes(&self) -> usize {
+        size_of_val(&*self.0)
+    }
+}
+
+/// Whether two polyhedra have the same points and edges, so that their hulls are the same.
+pub(crate) fn same_polyhedron(a: &ConvexPolyhedron, b: &ConvexPolyhedron) -> bool {
+    let [edges_a, edges_b] = [a, b].map(|p| p.edges().iter().map(|edge| edge.vertices));
+    same_points(a.points(), b.points()) && edges_a.eq(edges_b)
+}
+
+/// Whether two lists of points are bitwise equal, in one comparison of memory.
+#[inline]
+pub(crate) fn same_points(a: &[Vec3], b: &[Vec3]) -> bool {
+    bytemuck::cast_slice::<Vec3, u8>(a) == bytemuck::cast_slice::<Vec3, u8>(b)
+}
