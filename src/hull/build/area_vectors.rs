@@ -34,10 +34,11 @@ impl AreaVectors {
         let origin = points[0];
         let (mut volume, mut moment) = (f64x4::ZERO, DVec3x4([f64x4::ZERO; 3]));
         let mut add = |[one, two, three, four]: [&[u32; 3]; LANES], count: usize| {
-            let [a, b, c] = [0, 1, 2].map(|k| {
+            let corner = |k: usize| {
                 let four = [one[k], two[k], three[k], four[k]];
                 DVec3x4::gather(four, |v| points[v as usize])
-            });
+            };
+            let (a, b, c) = (corner(0), corner(1), corner(2));
             let vector = push_four(&mut vectors, [a, b, c], count);
             // Those that only fill up the last four span no volume.
             let (a, b, c) = (a - origin, b - origin, c - origin);
@@ -96,13 +97,15 @@ fn push_four(vectors: &mut Vec<AreaVector>, [a, b, c]: [DVec3x4; 3], count: usiz
     let [u, v, w] = vector.0.map(f64x4::to_array);
     let [x, y, z] = rounded.map(|row| row.to_array());
     let areas = area.to_array();
-    vectors.extend((0..count).map(|lane| AreaVector {
-        vector: DVec3::new(u[lane], v[lane], w[lane]),
-        area: areas[lane],
-        normal: Vec3::new(x[lane], y[lane], z[lane]),
-        highest: highest[lane],
-        lowest: lowest[lane],
-    }));
+    for lane in 0..count {
+        vectors.push(AreaVector {
+            vector: DVec3::new(u[lane], v[lane], w[lane]),
+            area: areas[lane],
+            normal: Vec3::new(x[lane], y[lane], z[lane]),
+            highest: highest[lane],
+            lowest: lowest[lane],
+        });
+    }
     vector
 }
 
