@@ -74,10 +74,10 @@ fn parse(number: &str) -> usize {
 /// Updates manifolds of a pair in each of so many frames.
 fn run(case: &str, size: usize, frames: usize) {
     let dispatcher = IsaGjkDispatcher::default();
-    let mut manifolds = Manifolds::new();
+    let mut manifolds = Manifolds::default();
     for (shapes, pose) in &pairs(case, size)[..frames] {
         if case == "new" {
-            manifolds.clear();
+            manifolds.list.clear();
         }
         measured_update(&dispatcher, shapes, pose, &mut manifolds);
     }

@@ -58,7 +58,7 @@ fn update_along(
     shapes: &[SharedShape; 2],
     poses: &[Pose],
 ) {
-    let mut manifolds = Manifolds::new();
+    let mut manifolds = Manifolds::default();
     for pose in poses {
         update(dispatcher, shapes, pose, &mut manifolds);
         black_box(&manifolds);

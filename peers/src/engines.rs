@@ -77,7 +77,7 @@ impl<D> Dispatched<D> {
             name,
             dispatcher,
             shapes,
-            manifolds: Manifolds::new(),
+            manifolds: Manifolds::default(),
         }
     }
 }
@@ -92,11 +92,15 @@ impl<D: PersistentQueryDispatcher> Engine for Dispatched<D> {
     }
 
     fn forget(&mut self) {
-        self.manifolds.clear();
+        self.manifolds.list.clear();
     }
 
     fn deepest(&self) -> Option<Real> {
-        let points = self.manifolds.iter().flat_map(|manifold| &manifold.points);
+        let points = self
+            .manifolds
+            .list
+            .iter()
+            .flat_map(|manifold| &manifold.points);
         points.map(|point| point.dist).reduce(Real::min)
     }
 }

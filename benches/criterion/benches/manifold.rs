@@ -34,7 +34,7 @@ fn time<D: PersistentQueryDispatcher>(
     updates: u64,
 ) -> Duration {
     let round: Vec<Pose> = poses.iter().chain(poses.iter().rev()).copied().collect();
-    let mut manifolds = Manifolds::new();
+    let mut manifolds = Manifolds::default();
     pass(dispatcher, shapes, &round, &mut manifolds);
     let rounds = updates.div_ceil(round.len() as u64);
     let start = Instant::now();

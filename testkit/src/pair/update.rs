@@ -3,12 +3,18 @@
 use std::hint::black_box;
 
 use parry3d::math::Pose;
+use parry3d::query::details::ContactManifoldsWorkspace;
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::SharedShape;
 
 use super::trajectory::PREDICTION;
 
-pub type Manifolds = Vec<ContactManifold<(), ()>>;
+/// What the contact graph keeps of a pair.
+#[derive(Default)]
+pub struct Manifolds {
+    pub list: Vec<ContactManifold<(), ()>>,
+    workspace: Option<ContactManifoldsWorkspace>,
+}
 
 /// Brings the manifolds of a pair up to date.
 #[inline]
@@ -24,8 +30,8 @@ pub fn update(
             &**a,
             &**b,
             PREDICTION,
-            manifolds,
-            &mut None,
+            &mut manifolds.list,
+            &mut manifolds.workspace,
         )
         .expect("both dispatchers know these shapes");
 }
