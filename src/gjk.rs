@@ -73,9 +73,29 @@ pub enum AxisTest {
     Supporting(CsoVertex),
 }
 
-/// Whether a cached `axis` (unit, frame 1) still separates by more than `beyond`, by one support pair or a
-/// bound. This is the incremental part of separating-axis GJK.
+/// Whether an `axis` (unit, frame 1) that separated before still separates by more than `beyond`. Mostly it
+/// does, and then bounds often show it that cost less than a support pair.
 #[inline]
+pub fn test_cached_axis<A: Support, B: Support>(
+    cso: &Cso<'_, A, B>,
+    axis: DVec3,
+    start: [VertexId; 2],
+    beyond: f64,
+    cost: &mut Cost,
+) -> AxisTest {
+    match separation_bound(cso, axis, cost) {
+        Some(separation) if separation > beyond => AxisTest::Separating(SeparatingAxis {
+            axis,
+            separation,
+            ids: start,
+        }),
+        _ => test_axis(cso, axis, start, beyond, cost),
+    }
+}
+
+/// Whether an `axis` (unit, frame 1) separates by more than `beyond`, by one support pair. This is the
+/// incremental part of separating-axis GJK.
+#[inline(always)]
 pub fn test_axis<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     axis: DVec3,
@@ -84,24 +104,6 @@ pub fn test_axis<A: Support, B: Support>(
     cost: &mut Cost,
 ) -> AxisTest {
     debug_assert!(is_unit(axis), "no unit vector: {axis}");
-    match separation_bound(cso, axis, cost) {
-        Some(separation) if separation > beyond => AxisTest::Separating(SeparatingAxis {
-            axis,
-            separation,
-            ids: start,
-        }),
-        _ => test_support_pair(cso, axis, start, beyond, cost),
-    }
-}
-
-#[inline(always)]
-fn test_support_pair<A: Support, B: Support>(
-    cso: &Cso<'_, A, B>,
-    axis: DVec3,
-    start: [VertexId; 2],
-    beyond: f64,
-    cost: &mut Cost,
-) -> AxisTest {
     let (on_2, id_2) = cso.support_2(axis, start[1], cost);
     // The bounding sphere of shape 1 may suffice: then none of its vertices is read. Rounding may make the
     // axis longer than 1; the mean of 1 and its squared length is at least its length.

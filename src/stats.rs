@@ -220,12 +220,19 @@ impl SharedStats {
     /// Adds one answered query.
     #[inline]
     pub fn record(&self, stage: Stage, cost: &Cost) {
+        self.record_free(stage);
         let shard = &self.0[SHARD.with(|s| *s)];
-        add(&shard.answered[stage as usize], 1);
         add(&shard.iterations, cost.iterations);
         add(&shard.supports, cost.supports);
         add(&shard.climb_moves, cost.climb_moves);
         add(&shard.fallbacks, cost.fallbacks);
+    }
+
+    /// Adds one answer that cost no query.
+    #[inline]
+    pub fn record_free(&self, stage: Stage) {
+        let shard = &self.0[SHARD.with(|s| *s)];
+        add(&shard.answered[stage as usize], 1);
     }
 
     /// Adds one pair that the fallback gets. What is wrong with the world goes to the log, once.

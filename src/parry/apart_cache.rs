@@ -17,11 +17,12 @@ use crate::slot::slot;
 use crate::stats::Stage;
 use crate::tolerance::{NEARLY_UNIT, PROOF_MARGIN};
 
-/// How many proofs there are, if no two pairs share a slot: 256 KiB.
+/// How many proofs there are, if no two pairs share a slot: 256 KiB, once there is the first.
 const SLOTS: usize = 1 << SLOT_BITS;
 const SLOT_BITS: u32 = 12;
 
 /// Proofs of many pairs. Where to look is decided by a key, and what is found there by its shapes and axis.
+#[derive(Default)]
 pub(crate) struct ApartCache(Box<[Proof]>);
 
 /// Fills one cache line.
@@ -39,7 +40,6 @@ struct Proof {
 }
 
 /// Whose proof it is.
-#[derive(Clone, Copy)]
 pub(crate) struct ApartPair<'a> {
     pub key: u64,
     pub shapes: [ShapeId; 2],
@@ -60,26 +60,28 @@ impl ApartPair<'_> {
     }
 }
 
-impl Default for ApartCache {
-    fn default() -> Self {
-        Self(vec![Proof::default(); SLOTS].into())
-    }
-}
-
 impl ApartCache {
     /// Whether a pair is certainly farther apart than `max_distance`.
     #[inline]
-    pub fn proves(&self, pair: ApartPair<'_>, max_distance: f64) -> bool {
-        let proof = &self.0[slot(pair.key, SLOT_BITS)];
+    pub fn proves(&self, pair: &ApartPair<'_>, max_distance: f64) -> bool {
+        let Some(proof) = self.0.get(slot(pair.key, SLOT_BITS)) else {
+            return false;
+        };
         proof.shapes == pair.shapes.map(Some)
-            && proof.axis == pair.axis
+            && bits(proof.axis) == bits(pair.axis)
             && proof.separation_at(pair.pose) > max_distance
     }
 
     /// Keeps the proof of a separation. `size` is that of both shapes, and no point that moves is farther than
     /// `lever` from the centre of its rotation.
     #[inline(never)]
-    pub fn store(&mut self, pair: ApartPair<'_>, separation: f64, size: f64, lever: f64) {
+    pub fn store(&mut self, pair: &ApartPair<'_>, separation: f64, [size, lever]: [f64; 2]) {
+        if !is_nearly_unit(pair.pose.rotation) {
+            return;
+        }
+        if self.0.is_empty() {
+            self.0 = vec![Proof::default(); SLOTS].into();
+        }
         let margin = (1.0 - PROOF_MARGIN) * (size + separation.abs());
         self.0[slot(pair.key, SLOT_BITS)] = Proof {
             rotation: pair.pose.rotation,
@@ -97,15 +99,19 @@ impl Proof {
     /// How far the shapes are apart at another pose, at least. Not a number if the pose is not.
     #[inline]
     fn separation_at(&self, pose: &Pose) -> f64 {
-        let (from, to) = (self.rotation, pose.rotation);
-        if !(is_nearly_unit(from) && is_nearly_unit(to)) {
+        if !is_nearly_unit(pose.rotation) {
             return f64::NAN;
         }
         let moved = exact_difference(pose.translation, self.translation).length();
         // A chord of a turned unit sphere is at most twice that between the unit quaternions.
-        let turned = 2.0 * f64::from((to - from).length());
+        let turned = 2.0 * f64::from((pose.rotation - self.rotation).length());
         f64::from(self.separation) - moved - turned * f64::from(self.lever)
     }
+}
+
+#[inline]
+fn bits(v: Vec3) -> [u32; 3] {
+    v.to_array().map(f32::to_bits)
 }
 
 #[inline]

@@ -188,7 +188,7 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
         }
         let found = match sink.memory() {
             PairMemory::None => self.search_along(strategy, self.cso.towards_origin()),
-            PairMemory::Axis(axis, ids) => match self.test_axis(axis, ids) {
+            PairMemory::Axis(axis, ids) => match self.test_cached_axis(axis, ids) {
                 AxisTest::Separating(apart) => {
                     sink.still_separated(&apart);
                     return Some(Stage::Axis);
@@ -230,6 +230,13 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
     fn test_axis(&mut self, axis: DVec3, ids: [VertexId; 2]) -> AxisTest {
         let start = self.cso.clamp_vertices(ids);
         gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost)
+    }
+
+    /// The same of an axis that separated the shapes before.
+    #[inline]
+    fn test_cached_axis(&mut self, axis: DVec3, ids: [VertexId; 2]) -> AxisTest {
+        let start = self.cso.clamp_vertices(ids);
+        gjk::test_cached_axis(self.cso, axis, start, self.max_distance, self.cost)
     }
 }
 

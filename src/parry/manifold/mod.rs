@@ -50,11 +50,14 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         workspace: &mut Workspace,
     ) -> Result<(), Unsupported> {
         let max_distance = pair.core_distance(self.prediction, pair.size());
+        if let Some(apart) = self.apart_pair(pair)
+            && workspace.apart_cache.proves(&apart, max_distance)
+        {
+            self.stats.record_free(apart.stage());
+            return Ok(());
+        }
         let mut cost = Cost::default();
-        let stage = match self.apart_pair(pair) {
-            Some(apart) if workspace.apart_cache.proves(apart, max_distance) => apart.stage(),
-            apart => self.query(pair, max_distance, apart, workspace, &mut cost)?,
-        };
+        let stage = self.query(pair, max_distance, workspace, &mut cost)?;
         self.stats.record(stage, &cost);
         Ok(())
     }
@@ -101,13 +104,12 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
 }
 
 impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
-    /// Runs the query, and keeps the proof if the shapes are `apart` as the manifold says.
+    /// Runs the query, and keeps the proof if the shapes are still apart as the manifold says.
     #[inline]
     fn query<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,
         max_distance: f64,
-        apart: Option<ApartPair<'_>>,
         workspace: &mut Workspace,
         cost: &mut Cost,
     ) -> Result<Stage, Unsupported> {
@@ -137,11 +139,12 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
             still_apart: None,
         };
         let stage = query.run_into(Full, &mut sink).ok_or(Unsupported)?;
-        if let (Some(apart), Some(separation)) = (apart, sink.still_apart(stage, &cso)) {
+        let (apart_by, stage) = (sink.still_apart(stage, &cso), sink.stage(stage));
+        if let (Some(separation), Some(apart)) = (apart_by, self.apart_pair(pair)) {
             let proofs = &mut workspace.apart_cache;
-            proofs.store(apart, separation, cso.size(), frame.lever(&cso));
+            proofs.store(&apart, separation, [cso.size(), frame.lever(&cso)]);
         }
-        Ok(sink.stage(stage))
+        Ok(stage)
     }
 
     /// What a proof that two hulls are apart is known by, if the manifold says that they are.
