@@ -82,12 +82,16 @@ impl Lanes for f32x4 {
 
     #[inline(always)]
     fn greatest(self, ids: Self) -> ArgMax<f32> {
-        let values = self.to_array();
-        let greater = |a: usize, b: usize| if values[b] > values[a] { b } else { a };
-        let lane = greater(greater(0, 1), greater(2, 3));
+        let [a, b, c, d] = self.to_array();
+        let greater = |a: f32, b: f32| if a > b { a } else { b };
+        let value = greater(greater(a, b), greater(c, d));
+        let lane = self
+            .simd_eq(Self::splat(value))
+            .to_bitmask()
+            .trailing_zeros() as usize;
         ArgMax {
-            id: ids.to_array()[lane].to_bits() as usize,
-            value: values[lane],
+            id: ids.to_array()[lane % LANES].to_bits() as usize,
+            value,
         }
     }
 }

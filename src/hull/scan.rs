@@ -53,11 +53,35 @@ impl Scan {
     }
 
     /// The extreme vertex of `points` in direction `dir`. Among ties it is the preferred vertex, so that
-    /// contacts stay where they are, or else the first. (This is inlined with everything it calls: passing
-    /// the direction through memory takes longer than the scan.)
+    /// contacts stay where they are, or else the first.
     #[inline(always)]
     pub fn extreme_vertex(&self, points: &[Vec3], dir: DVec3, preferred: VertexId) -> VertexId {
-        let mut candidates = self.candidates(dir);
+        let scan = match self.rows.len() {
+            1 => Self::extreme_vertex_of::<1>,
+            2 => Self::extreme_vertex_of::<2>,
+            3 => Self::extreme_vertex_of::<3>,
+            4 => Self::extreme_vertex_of::<4>,
+            5 => Self::extreme_vertex_of::<5>,
+            6 => Self::extreme_vertex_of::<6>,
+            7 => Self::extreme_vertex_of::<7>,
+            _ => Self::extreme_vertex_of::<8>,
+        };
+        scan(self, points, dir.x, dir.y, dir.z, preferred)
+    }
+
+    /// The same of a hull with so many rows: their heights stay in registers. (Everything is inlined, and the
+    /// coordinates are separate arguments: passing the direction through memory takes longer than the scan.)
+    #[inline(never)]
+    fn extreme_vertex_of<const ROWS: usize>(
+        &self,
+        points: &[Vec3],
+        x: f64,
+        y: f64,
+        z: f64,
+        preferred: VertexId,
+    ) -> VertexId {
+        let dir = DVec3::new(x, y, z);
+        let mut candidates = self.candidates::<ROWS>(dir);
         let mut highest = candidates.trailing_zeros();
         if candidates.is_power_of_two() {
             return highest.into();
@@ -65,6 +89,7 @@ impl Scan {
         if candidates >> preferred.index() & 1 == 1 {
             highest = preferred.into();
         }
+        candidates &= !(1 << highest);
         let height = |vertex: u32| dir.dot(points[vertex as usize].as_dvec3());
         let mut most = height(highest);
         while candidates != 0 {
@@ -91,7 +116,10 @@ impl Scan {
 
     /// A bit for each vertex that may be the highest. At least one is set.
     #[inline(always)]
-    fn candidates(&self, dir: DVec3) -> u64 {
+    fn candidates<const ROWS: usize>(&self, dir: DVec3) -> u64 {
+        let Some(rows) = self.rows.first_chunk::<ROWS>() else {
+            return 1;
+        };
         let size = dir.abs().max_element();
         // A division takes a quarter of the time of a scan, and most directions are unit vectors.
         let (dir, size) = if SIZES.contains(&size) {
@@ -100,15 +128,12 @@ impl Scan {
             (dir / size, 1.0)
         };
         let dir = dir.as_vec3().to_array().map(f32x8::splat);
-        let mut heights = [f32x8::ZERO; LARGEST / LANES];
-        let mut highest = f32x8::splat(f32::NEG_INFINITY);
-        for (height, [x, y, z]) in heights.iter_mut().zip(&self.rows) {
-            *height = *x * dir[0] + *y * dir[1] + *z * dir[2];
-            highest = highest.fast_max(*height);
-        }
+        let heights = rows.map(|[x, y, z]| x * dir[0] + y * dir[1] + z * dir[2]);
+        let highest = heights.into_iter().reduce(f32x8::fast_max);
+        let highest = highest.unwrap_or(f32x8::ZERO);
         let least = f32x8::splat(greatest(highest) - SCAN_ROUNDING * size as f32);
         let mut candidates = 0;
-        for (number, height) in heights[..self.rows.len()].iter().enumerate() {
+        for (number, height) in heights.iter().enumerate() {
             let bits = height.simd_ge(least).to_bitmask();
             candidates |= u64::from(bits) << (LANES * number);
         }
