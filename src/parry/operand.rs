@@ -1,12 +1,13 @@
 //! The shapes of a pair, and where their prepared hulls are.
 
-use parry3d::math::Real;
+use parry3d::bounding_volume::{Aabb, BoundingVolume};
+use parry3d::math::{Pose, Real};
 use parry3d::shape::{ConvexPolyhedron, RoundConvexPolyhedron, Shape, ShapeType};
 
 use crate::hull::Hull;
 use crate::parry::hull_cache::epoch::Epoch;
 use crate::parry::hull_cache::{HullCache, HullRef};
-use crate::parry::hull_shape::HullShape;
+use crate::parry::hull_shape::{HullShape, aabb_of_points};
 
 /// A hull with a rounded border of this radius around it.
 #[derive(Clone, Copy)]
@@ -92,6 +93,17 @@ impl<'a> Operand<'a> {
     #[inline]
     pub fn is_hull(&self) -> bool {
         self.hull.is_some()
+    }
+
+    /// The box around it at a pose.
+    pub fn aabb(&self, pose: &Pose) -> Aabb {
+        match self.hull {
+            // parry looks at one coordinate at a time.
+            Some(HullSource::Plain(polyhedron, border_radius)) => {
+                aabb_of_points(polyhedron.points(), pose).loosened(border_radius)
+            }
+            _ => self.shape.compute_aabb(pose),
+        }
     }
 
     /// Whether it may consist of parts. For most shapes this is quickly ruled out.

@@ -59,8 +59,8 @@ pub(crate) fn compound_and_convex<M, C, F>(
     C: Default + Copy + Send + Sync,
     F: PersistentQueryDispatcher<M, C>,
 {
-    let reach = sub_manifolds.reach(convex, pos12, order);
     let whole = SubShape::whole(convex);
+    let reach = sub_manifolds.reach(&whole, pos12, order);
     let seams = Seams::near(compound, &reach);
     for i in compound.bvh().intersect_aabb(&reach) {
         sub_manifolds.update_part(pos12, &part(compound, &seams, i), &whole, order);

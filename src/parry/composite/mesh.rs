@@ -69,8 +69,8 @@ pub(crate) fn triangles_and_hull<M, C, F>(
     C: Default + Copy + Send + Sync,
     F: PersistentQueryDispatcher<M, C>,
 {
-    let near = sub_manifolds.reach(hull, pos12, order);
     let hull = SubShape::whole(hull);
+    let near = sub_manifolds.reach(&hull, pos12, order);
     let is_flagged = triangles.is_flagged();
     triangles.each_near(&near, |id, triangle| {
         let normals = || triangles.normals(id);

@@ -119,13 +119,13 @@ where
 
     /// The box around a whole shape within reach, in the frame of the shape with parts, which is first
     /// in `order`.
-    pub fn reach(&self, whole: &dyn Shape, pos12: &Pose, order: PairOrder) -> Aabb {
+    pub fn reach(&self, whole: &SubShape<'_>, pos12: &Pose, order: PairOrder) -> Aabb {
         let pose = if order.is_reversed() {
             pos12.inverse()
         } else {
             *pos12
         };
-        whole.compute_aabb(&pose).loosened(self.prediction)
+        whole.operand.aabb(&pose).loosened(self.prediction)
     }
 
     /// A part and a whole shape; the shape with parts is first in `order`.

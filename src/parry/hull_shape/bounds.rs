@@ -1,6 +1,6 @@
-//! Bounding boxes by support queries.
+//! Bounding boxes of points, and by support queries.
 
-use glam::{Mat3A, Vec3A};
+use glam::{Mat3A, Vec3, Vec3A};
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::{Pose, Vector};
 
@@ -14,24 +14,10 @@ impl HullShape {
     #[inline]
     pub(super) fn aabb(&self, pose: &Pose) -> Aabb {
         if self.hull().points().len() <= SCAN_UP_TO {
-            self.scanned_aabb(pose)
+            aabb_of_points(self.hull().points(), pose)
         } else {
             self.climbed_aabb(pose)
         }
-    }
-
-    fn scanned_aabb(&self, pose: &Pose) -> Aabb {
-        let rotation = Mat3A::from_quat(pose.rotation);
-        let (mut mins, mut maxs) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
-        for &point in self.hull().points() {
-            let turned = rotation * Vec3A::from(point);
-            mins = mins.min(turned);
-            maxs = maxs.max(turned);
-        }
-        Aabb::new(
-            pose.translation + Vector::from(mins),
-            pose.translation + Vector::from(maxs),
-        )
     }
 
     fn climbed_aabb(&self, pose: &Pose) -> Aabb {
@@ -46,4 +32,19 @@ impl HullShape {
             pose.translation + Vector::new(reach(3), reach(4), reach(5)),
         )
     }
+}
+
+/// The axis-aligned box around points at a pose.
+pub(crate) fn aabb_of_points(points: &[Vec3], pose: &Pose) -> Aabb {
+    let rotation = Mat3A::from_quat(pose.rotation);
+    let (mut mins, mut maxs) = (Vec3A::INFINITY, Vec3A::NEG_INFINITY);
+    for &point in points {
+        let turned = rotation * Vec3A::from(point);
+        mins = mins.min(turned);
+        maxs = maxs.max(turned);
+    }
+    Aabb::new(
+        pose.translation + Vector::from(mins),
+        pose.translation + Vector::from(maxs),
+    )
 }

@@ -45,6 +45,7 @@ mod prepared;
 mod rays;
 mod shape;
 
+pub(crate) use bounds::aabb_of_points;
 pub use prepared::PreparedShapes;
 
 use std::sync::Arc;
