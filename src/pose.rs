@@ -100,6 +100,18 @@ impl RelativePose {
         }
     }
 
+    /// How far no point of shape 2 has moved since an earlier pose, if it is no farther than `lever` from the origin
+    /// of frame 2.
+    #[inline]
+    pub(crate) fn way_from(&self, before: &Self, lever: f64) -> f64 {
+        let [now, then] = [self.rotation, before.rotation];
+        // Twice the squared chord of a point that is turned on the unit sphere, at most.
+        let turned = now.x_axis.distance_squared(then.x_axis)
+            + now.y_axis.distance_squared(then.y_axis)
+            + now.z_axis.distance_squared(then.z_axis);
+        self.translation.distance(before.translation) + (0.5 * turned).sqrt() * lever
+    }
+
     /// A point of frame 2, in frame 1.
     #[inline]
     pub fn point_to_1(&self, p: DVec3) -> DVec3 {

@@ -18,6 +18,14 @@ pub(crate) const GOOD_SEED: f64 = 1e-3;
 /// from the previous frame, and starting from the present features costs less.
 pub(crate) const MIN_GROWABLE: f64 = 0.9;
 
+/// Of the directions that a facet covers, a proof of the others leaves out those within this share of the tangent. So
+/// it holds while the facet becomes smaller or turns.
+pub(crate) const CAP_SHARE: f64 = 0.7;
+
+/// The least tangent of a facet that covers many directions. Those of hulls of a hundred vertices cover fewer, and
+/// while such hulls turn by half a degree in each frame, a proof of the others hardly lasts for one.
+pub(crate) const WIDE_CAP: f64 = 0.25;
+
 /// If the two points of each contact are within this share of the smaller shape's radius of each other, across
 /// the normal, the shapes hardly moved, and the faces under the contacts are worth a test. A tenth of
 /// [`KEPT_DRIFT`](crate::tolerance::KEPT_DRIFT).

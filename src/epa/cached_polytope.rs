@@ -8,6 +8,7 @@
 
 use glam::DVec3;
 
+use super::clearance::{Cap, Clearance, KnownDepth};
 use super::polytope::{EpaScratch, ExpandingPolytope, min_no_nan};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
@@ -35,6 +36,8 @@ pub(super) struct CachedPolytope {
     vertex_count: u8,
     /// Zero if the cache is empty: then it proves nothing.
     face_count: u8,
+    /// What was proved last.
+    clearance: Option<Clearance>,
 }
 
 impl Default for CachedPolytope {
@@ -44,21 +47,28 @@ impl Default for CachedPolytope {
             faces: [[0; 3]; MOST_FACES],
             vertex_count: 0,
             face_count: 0,
+            clearance: None,
         }
     }
 }
 
 impl CachedPolytope {
-    /// Whether this surface, or what it grows to in a few expansions, proves that
+    /// Whether this surface, or what it grows to in a few expansions, or what it proved earlier, proves that
     /// [`penetration_below`](super::penetration_below) would find no smaller depth.
     pub fn proves_depth<A: Polytope, B: Polytope>(
         &mut self,
         cso: &Cso<'_, A, B>,
-        known_depth: f64,
+        known: &KnownDepth,
         scratch: &mut EpaScratch,
         cost: &mut Cost,
     ) -> bool {
-        let radius = known_depth - PROOF_MARGIN * DEPTH_GAP * cso.min_radius();
+        let radius = known.depth - PROOF_MARGIN * DEPTH_GAP * cso.min_radius();
+        if known.is_wide()
+            && let Some(clearance) = &self.clearance
+            && clearance.proves(cso, known, radius)
+        {
+            return true;
+        }
         let polytope = &mut scratch.polytope;
         polytope.clear(cso.size(), radius);
         for &key in &self.vertices[..self.vertex_count.into()] {
@@ -67,18 +77,24 @@ impl CachedPolytope {
                 None => return false,
             }
         }
-        let distance = self.distance(polytope);
-        distance >= radius
-            || distance > MIN_GROWABLE * radius && self.grow(cso, radius, scratch, cost)
+        let cap = known.narrow_cap();
+        let reach = self.reach(polytope, &cap);
+        if reach >= radius {
+            if known.is_wide() {
+                self.clearance = Clearance::new(cso, cap, reach);
+            }
+            return true;
+        }
+        reach > MIN_GROWABLE * radius && self.grow(cso, radius, scratch, cost)
     }
 
     fn faces(&self) -> &[[u8; 3]] {
         &self.faces[..self.face_count.into()]
     }
 
-    /// The distance of the origin from the nearest plane, if the origin is on the inner side of all planes;
-    /// otherwise, or without planes, negative infinity.
-    fn distance(&self, polytope: &ExpandingPolytope) -> f64 {
+    /// How far the polytope reaches in each direction outside of a cap, at least, if the origin is on the inner side of
+    /// all planes; otherwise, or without planes, negative infinity.
+    fn reach(&self, polytope: &ExpandingPolytope, cap: &Cap) -> f64 {
         let mut least = f64::INFINITY;
         for face in self.faces() {
             let [a, b, c] = face.map(|v| polytope.vertex(v.into()).w);
@@ -89,7 +105,10 @@ impl CachedPolytope {
             if !(height > 0.0 && squared > 0.0) {
                 return f64::NEG_INFINITY;
             }
-            least = min_no_nan(least, squared);
+            // It reaches farther than its distance, and most faces are far.
+            if squared < least {
+                least = min_no_nan(least, cap.squared_reach(outward, height));
+            }
         }
         if self.face_count > 0 {
             least.sqrt()
@@ -172,4 +191,101 @@ fn vertex_at<A: Polytope, B: Polytope>(key: [u16; 2], cso: &Cso<'_, A, B>) -> Op
     let ids @ [id_1, id_2] = key.map(VertexId::from);
     let known = cso.shape_1.clamp_vertex(id_1) == id_1 && cso.shape_2.clamp_vertex(id_2) == id_2;
     known.then(|| cso.vertex(ids))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{DQuat, Vec3};
+
+    use super::*;
+    use crate::epa::penetration;
+    use crate::hull::Hull;
+    use crate::pose::RelativePose;
+
+    fn vector(rng: &mut oorandom::Rand64) -> DVec3 {
+        DVec3::from([(); 3].map(|()| 2.0 * rng.rand_float() - 1.0))
+    }
+
+    fn hull(rng: &mut oorandom::Rand64) -> Hull {
+        let count = rng.rand_range(8..40);
+        let points: Vec<Vec3> = (0..count)
+            .map(|_| vector(rng).normalize().as_vec3())
+            .collect();
+        Hull::from_points(&points).expect("points on a ball are their own hull")
+    }
+
+    /// A triangle, if it lies on the boundary of the difference and the origin projects into it.
+    fn facet(cso: &Cso<'_, Hull, Hull>, corners: [CsoVertex; 3]) -> Option<KnownDepth> {
+        let corners = corners.map(|corner| cso.vertex(corner.ids).w);
+        let [a, b, c] = corners;
+        let normal = (b - a).cross(c - a).try_normalize()?;
+        let start = cso.start_vertices(normal);
+        let top = cso.support(normal, start, &mut Cost::default()).w;
+        let depth = normal.dot(a);
+        let insets = [(a, b), (b, c), (c, a)].map(|(from, to)| {
+            let inward = normal.cross(to - from).normalize();
+            -inward.dot(from)
+        });
+        let inset = insets.into_iter().fold(f64::INFINITY, f64::min);
+        let is_facet = normal.dot(top - a) < 1e-12 && depth > 0.0 && inset > 0.0;
+        is_facet.then_some(KnownDepth {
+            depth,
+            normal,
+            inset,
+        })
+    }
+
+    /// Two random poses, a motion of this size apart.
+    fn poses(motion: f64, rng: &mut oorandom::Rand64) -> [RelativePose; 2] {
+        let [turn, place, turned, moved] = [(); 4].map(|()| vector(rng));
+        [0.0, motion].map(|motion| {
+            let turn =
+                DQuat::from_scaled_axis(turned * motion) * DQuat::from_scaled_axis(3.0 * turn);
+            RelativePose::from_parts(turn, place + moved * motion)
+        })
+    }
+
+    /// What the polytope of an expansion proves of the nearest facet, and its triangles.
+    fn prove(cso: &Cso<'_, Hull, Hull>) -> Option<(Clearance, Vec<[CsoVertex; 3]>)> {
+        let (scratch, cost) = (&mut EpaScratch::default(), &mut Cost::default());
+        penetration(cso, &[], scratch, cost)?;
+        let surface: Vec<_> = scratch.surface().collect();
+        let mut cached = CachedPolytope::default();
+        cached.store(cso, scratch);
+        let facets = surface.iter().filter_map(|corners| facet(cso, *corners));
+        let nearest = facets.min_by(|a, b| a.depth.total_cmp(&b.depth))?;
+        cached.proves_depth(cso, &nearest, scratch, cost);
+        Some((cached.clearance?, surface))
+    }
+
+    /// After small and large motions, and of all facets, one of which is the nearest.
+    #[test]
+    fn what_was_proved_before_a_motion_is_true_after_it() {
+        let mut rng = oorandom::Rand64::new(5);
+        let [mut proved, mut others] = [0; 2];
+        for round in 0..2000 {
+            let hulls = [hull(&mut rng), hull(&mut rng)];
+            let poses = poses([0.0, 1e-4, 1e-3, 1e-2, 1e-1][round % 5], &mut rng);
+            let [before, after] = [0, 1].map(|i| Cso {
+                shape_1: &hulls[0],
+                shape_2: &hulls[1],
+                pose: &poses[i],
+            });
+            let Some((clearance, surface)) = prove(&before) else {
+                continue;
+            };
+            let (scratch, cost) = (&mut EpaScratch::default(), &mut Cost::default());
+            let depth = penetration(&after, &[], scratch, cost).map_or(f64::NAN, |p| p.depth);
+            let gap = DEPTH_GAP * after.min_radius();
+            for facet in surface.iter().filter_map(|t| facet(&after, *t)) {
+                if clearance.proves(&after, &facet, facet.depth - gap) {
+                    assert!(depth > facet.depth - 2.0 * gap, "{depth}, {facet:?}");
+                    proved += 1;
+                } else if depth < facet.depth - 2.0 * gap {
+                    others += 1;
+                }
+            }
+        }
+        assert!(proved.min(others) > 50, "{proved} proved, {others} not");
+    }
 }

@@ -10,10 +10,12 @@
 //! special case. The first polytope need only have volume.
 
 mod cached_polytope;
+mod clearance;
 mod polytope;
 mod polytope_cache;
 mod seed;
 
+pub use clearance::KnownDepth;
 pub use polytope::EpaScratch;
 pub use polytope_cache::PolytopeCache;
 

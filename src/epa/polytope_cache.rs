@@ -1,6 +1,7 @@
 //! The cached polytopes of many pairs.
 
 use super::cached_polytope::CachedPolytope;
+use super::clearance::KnownDepth;
 use super::polytope::EpaScratch;
 use crate::slot::slot;
 use crate::stats::Cost;
@@ -43,14 +44,14 @@ impl PolytopeCache {
         &mut self,
         key: u64,
         cso: &Cso<'_, A, B>,
-        known_depth: f64,
+        known: &KnownDepth,
         scratch: &mut EpaScratch,
         cost: &mut Cost,
     ) -> bool {
         let slot = self.slot(key);
         match &mut slot.polytope {
             Some(polytope) if slot.key == key => {
-                let proved = polytope.proves_depth(cso, known_depth, scratch, cost);
+                let proved = polytope.proves_depth(cso, known, scratch, cost);
                 slot.protected_misses = if proved { PROTECTED_MISSES } else { 0 };
                 proved
             }

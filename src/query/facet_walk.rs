@@ -116,7 +116,8 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             Verdict::Certified(proximity) => {
                 return ControlFlow::Break(Some((Answer::Near(*proximity), walk.stage)));
             }
-            Verdict::Undecided(candidate) => {
+            Verdict::Undecided(candidate, inset) => {
+                let candidate = (candidate, *inset);
                 let found = self.find_depth(candidate, walk.flush, walk.stage, walk.from);
                 return ControlFlow::Break(found);
             }

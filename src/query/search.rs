@@ -7,7 +7,7 @@ use super::pipeline::{Found, Start};
 use super::seeds::EpaSeeds;
 use super::types::{Answer, Proximity};
 use super::{Query, witness};
-use crate::epa::{self, DepthSearch, Penetration};
+use crate::epa::{self, DepthSearch, KnownDepth, Penetration};
 use crate::gjk::{self, Closest, Outcome, SeparatingAxis, Simplex};
 use crate::simplex::Preferred;
 use crate::stats::Stage;
@@ -93,23 +93,27 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         })
     }
 
-    /// The depth. Faces that lie flush on each other, a polytope of a previous frame, or the adjacent facets may
+    /// The depth, if a candidate and its inset are known. Faces that lie flush on each other, a polytope of a previous frame, or the adjacent facets may
     /// prove that it is the candidate's. Otherwise EPA expands a polytope from points near the candidate. If it
     /// finds the shapes apart, GJK finds the distance.
     pub(super) fn find_depth(
         &mut self,
-        candidate: &Proximity,
+        (candidate, inset): (&Proximity, f64),
         flush: Option<&FlushFaces>,
         stage: Stage,
         from: Start,
     ) -> Found {
-        let known = -candidate.signed_distance;
-        debug_assert!(known >= 0.0, "they do not overlap: {candidate:?}");
+        let known = KnownDepth {
+            depth: -candidate.signed_distance,
+            normal: candidate.normal,
+            inset,
+        };
+        debug_assert!(known.depth >= 0.0, "they do not overlap: {candidate:?}");
         if flush.is_some_and(|flush| self.is_depth(candidate, flush)) {
             return Some((Answer::Near(*candidate), stage));
         }
         if let Some((cache, key)) = &mut self.polytope_cache
-            && cache.proves_depth(*key, self.cso, known, self.scratch, self.cost)
+            && cache.proves_depth(*key, self.cso, &known, self.scratch, self.cost)
         {
             return Some((Answer::Near(*candidate), Stage::CachedPolytope));
         }
@@ -118,7 +122,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         }
         let seeds = EpaSeeds::under(self.cso, candidate.features);
         let (cso, seeds) = (self.cso, seeds.as_slice());
-        let depth = epa::penetration_below(cso, seeds, known, self.scratch, self.cost)?;
+        let depth = epa::penetration_below(cso, seeds, known.depth, self.scratch, self.cost)?;
         self.store_polytope();
         let depth = match depth {
             DepthSearch::Found(depth) => depth,

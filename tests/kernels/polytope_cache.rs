@@ -3,7 +3,7 @@
 
 use glam::{DQuat, DVec3};
 use isa_gjk::Hull;
-use isa_gjk::internals::epa::{EpaScratch, PolytopeCache, penetration};
+use isa_gjk::internals::epa::{EpaScratch, KnownDepth, PolytopeCache, penetration};
 use isa_gjk::internals::pose::RelativePose;
 use isa_gjk::internals::stats::{Cost, Stage};
 use isa_gjk::internals::support::Cso;
@@ -70,6 +70,15 @@ fn cso<'a>(hulls: &'a [Hull; 2], pose: &'a RelativePose) -> Cso<'a, Hull, Hull> 
     }
 }
 
+/// A depth alone, of which no facet is known.
+fn known(depth: f64) -> KnownDepth {
+    KnownDepth {
+        depth,
+        normal: DVec3::X,
+        inset: 0.0,
+    }
+}
+
 /// Along slow and fast motions, with a cached polytope of the pair's own, and with one that many pairs write
 /// to in turn.
 #[test]
@@ -127,7 +136,7 @@ fn what_a_cached_polytope_proves_is_true() {
             };
             for claimed in [0.6, 0.95, 1.0, 1.0 + 1e-5, 1.1].map(|share| share * true_depth) {
                 let tolerance = TOLERANCE * cso.min_radius();
-                let proves = cache.proves_depth(0, &cso, claimed, scratch, cost);
+                let proves = cache.proves_depth(0, &cso, &known(claimed), scratch, cost);
                 assert!(!proves || true_depth >= claimed - tolerance, "{round}");
                 outcomes[usize::from(proves)] += usize::from(true_depth > 0.0);
             }
@@ -135,9 +144,10 @@ fn what_a_cached_polytope_proves_is_true() {
                 penetration(&cso, &[], scratch, cost);
                 cache.store(0, &cso, scratch);
                 let radius = cso.min_radius();
-                own += usize::from(cache.proves_depth(0, &cso, true_depth, scratch, cost));
+                own += usize::from(cache.proves_depth(0, &cso, &known(true_depth), scratch, cost));
                 overlapping += usize::from(true_depth > 0.0);
-                assert!(!cache.proves_depth(0, &cso, true_depth + 1e-5 * radius, scratch, cost));
+                let too_deep = known(true_depth + 1e-5 * radius);
+                assert!(!cache.proves_depth(0, &cso, &too_deep, scratch, cost));
             }
         }
     }
@@ -158,7 +168,7 @@ fn an_empty_shell_proves_nothing() {
         assert!(!PolytopeCache::default().proves_depth(
             0,
             &cso(&hulls, &pose),
-            depth,
+            &known(depth),
             scratch,
             cost
         ));
@@ -182,7 +192,7 @@ fn pairs_that_share_a_place_do_not_drive_each_other_out() {
     let mut frame = |pairs: std::ops::Range<u64>| {
         let mut proved = Vec::new();
         for key in pairs {
-            if cache.proves_depth(key, &cso, found.depth, scratch, cost) {
+            if cache.proves_depth(key, &cso, &known(found.depth), scratch, cost) {
                 proved.push(key);
             } else {
                 cache.store(key, &cso, &expanded);

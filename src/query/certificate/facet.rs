@@ -15,9 +15,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::polygon::{
-    cone_contains_ball, crossing, edge_outside_origin, inset, pyramid_contains_ball,
-};
+use super::polygon::{cone_contains_ball, crossing, inset, inset_of_origin, pyramid_contains_ball};
 use super::verdict::{FacetEdge, Verdict};
 use crate::gjk::SeparatingAxis;
 use crate::map_pair::map_pair;
@@ -110,14 +108,17 @@ impl FacetTest {
             }
         }
         let corners = p.face_points(face).map(|corner| corner - on_q);
-        if let Some(side) = edge_outside_origin(corners.clone(), normal, self.tolerance) {
-            let ends = map_pair(side.ends, |i| [p.face_vertex(face, i), q_id]);
-            return Verdict::OutsideEdge(FacetEdge::new(ends, side.along, normal));
-        }
+        let inset = match inset_of_origin(corners.clone(), normal, self.tolerance) {
+            Ok(inset) => inset,
+            Err(side) => {
+                let ends = map_pair(side.ends, |i| [p.face_vertex(face, i), q_id]);
+                return Verdict::OutsideEdge(FacetEdge::new(ends, side.along, normal));
+            }
+        };
         if signed_distance >= 0.0 || pyramid_contains_ball(corners, apex, depth) {
             return Verdict::Certified(certified);
         }
-        Verdict::Undecided(certified)
+        Verdict::Undecided(certified, inset)
     }
 
     /// Two edges that cross; everything in frame 1.
@@ -139,15 +140,17 @@ impl FacetTest {
         };
         let normal = plane.normal;
         // This comes before the support: the facet is left whether or not the two edges still span one.
-        let vertices = parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], plane.is_along_cross);
-        let corners = vertices.iter().map(|vertex| vertex.w);
+        let corners =
+            || parallelogram([[a0, a1], [b0, b1]], [ends_1, ends_2], plane.is_along_cross);
         let [s, t] = crossing(offset, along_1, along_2);
         let is_inside = (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t);
-        if !is_inside
-            && let Some(side) = edge_outside_origin(corners.clone(), normal, self.tolerance)
-        {
-            let ends = map_pair(side.ends, |i| vertices[i].ids);
-            return Verdict::OutsideEdge(FacetEdge::new(ends, side.along, normal));
+        if !is_inside {
+            let corners = corners();
+            let points = corners.iter().map(|corner| corner.w);
+            if let Err(side) = inset_of_origin(points, normal, self.tolerance) {
+                let ends = map_pair(side.ends, |i| corners[i].ids);
+                return Verdict::OutsideEdge(FacetEdge::new(ends, side.along, normal));
+            }
         }
         let extreme = cso.support(normal, [ends_1[0], ends_2[0]], cost);
         let signed_distance = -normal.dot(extreme.w);
@@ -174,11 +177,11 @@ impl FacetTest {
         let inset = s.min(1.0 - s).min(t).min(1.0 - t) * plane.least_height;
         if signed_distance >= 0.0
             || cone_contains_ball(inset, depth, center, normal)
-            || pyramid_contains_ball(corners, center, depth)
+            || pyramid_contains_ball(corners().iter().map(|corner| corner.w), center, depth)
         {
             return Verdict::Certified(proximity);
         }
-        Verdict::Undecided(proximity)
+        Verdict::Undecided(proximity, inset)
     }
 }
 

@@ -201,7 +201,7 @@ mod tests {
             let candidate = (0..20).find_map(|_| {
                 match facet::certify(&cso, next?, f64::INFINITY, DEPTH_GAP, &mut cost) {
                     Verdict::OutsideEdge(side) => next = gauss_map::adjacent_facet(&cso, &side),
-                    Verdict::Undecided(candidate) => return Some(candidate),
+                    Verdict::Undecided(candidate, _) => return Some(candidate),
                     _ => next = None,
                 }
                 None

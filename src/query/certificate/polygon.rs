@@ -116,24 +116,30 @@ pub(in crate::query) struct PolygonEdge {
     pub along: DVec3,
 }
 
-/// The side of a polygon, counter-clockwise about `normal`, beyond which the origin projects
-/// farthest; `None` if it projects inside, up to `tolerance`.
+/// How far from its sides the origin projects into a polygon, counter-clockwise about `normal`: zero if it projects
+/// outside, up to `tolerance`. Beyond that, the side beyond which it projects farthest is the error.
 #[inline]
-pub(in crate::query) fn edge_outside_origin(
+pub(in crate::query) fn inset_of_origin(
     corners: impl FacePoints,
     normal: DVec3,
     tolerance: f64,
-) -> Option<PolygonEdge> {
+) -> Result<f64, PolygonEdge> {
     let mut beyond = None;
     let mut farthest = tolerance * tolerance;
-    let mut from = corners.clone().next_back()?;
+    let mut nearest = f64::INFINITY;
+    let Some(mut from) = corners.clone().next_back() else {
+        return Ok(0.0);
+    };
     let mut number = corners.len() - 1;
     for (i, to) in corners.enumerate() {
         let along = to - from;
         let inward = normal.cross(along);
         let height = -inward.dot(from);
-        if height < 0.0 {
-            let squared = height * height / inward.length_squared();
+        let squared = height * height / inward.length_squared();
+        if height >= 0.0 {
+            nearest = if squared < nearest { squared } else { nearest };
+        } else {
+            nearest = 0.0;
             if squared > farthest {
                 farthest = squared;
                 beyond = Some(PolygonEdge {
@@ -144,7 +150,7 @@ pub(in crate::query) fn edge_outside_origin(
         }
         (number, from) = (i, to);
     }
-    beyond
+    beyond.map_or(Ok(nearest.sqrt()), Err)
 }
 
 /// Whether the origin is at least `depth` inside all side planes of the pyramid over a
@@ -178,8 +184,6 @@ pub(in crate::query) fn ball_is_inside(corner: DVec3, inward: DVec3, radius: f64
 #[inline]
 pub(in crate::query) fn crossing(offset: DVec3, along_1: DVec3, along_2: DVec3) -> [f64; 2] {
     let cross = along_1.cross(along_2);
-    let area_squared = cross.length_squared();
-    map_pair([along_2, along_1], |along| {
-        -offset.dot(along.cross(cross)) / area_squared
-    })
+    let (area_squared, across) = (cross.length_squared(), offset.cross(cross));
+    map_pair([along_2, along_1], |along| along.dot(across) / area_squared)
 }

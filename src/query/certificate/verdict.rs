@@ -19,8 +19,8 @@ pub(crate) enum Verdict {
     /// The facet's plane, with this normal, cuts through the difference, as this vertex is beyond it.
     NotSupporting(CsoVertex, DVec3),
     /// The shapes overlap, but perhaps less in another direction. This is the answer if the facet is the
-    /// nearest.
-    Undecided(Proximity),
+    /// nearest. The origin projects into it, so far from its sides.
+    Undecided(Proximity, f64),
     /// These features do not span a facet.
     Degenerate,
 }
@@ -74,7 +74,7 @@ impl Verdict {
                 };
                 Self::NotSupporting(vertex, direction(*normal))
             }
-            Self::Undecided(candidate) => Self::Undecided(reversed(candidate, pose)),
+            Self::Undecided(candidate, inset) => Self::Undecided(reversed(candidate, pose), *inset),
             Self::Degenerate => Self::Degenerate,
         }
     }
