@@ -38,6 +38,10 @@ pub trait Body: Support {
     /// A point of the flat or ruled side that looks about along `dir`, near another point.
     fn point_on_side(&self, dir: DVec3, near: DVec3, cost: &mut Cost) -> Option<DVec3>;
 
+    /// The centre and the radius of a ball inside that touches the surface at a point of a ruled side; the point
+    /// itself on others.
+    fn ball_at(&self, p: DVec3) -> (DVec3, f64);
+
     /// The edges at `vertex`, extreme along `dir`, and the ruled sides.
     fn rulings(&self, dir: DVec3, vertex: VertexId) -> impl Iterator<Item = Ruling>;
 

@@ -7,7 +7,7 @@ use super::curvature::Curvature;
 use super::piece::across;
 use super::stationary::{MAX_NEWTON_STEPS, NormalSeparation};
 use crate::stats::Cost;
-use crate::support::Cso;
+use crate::support::{Cso, CsoVertex};
 use crate::tolerance::SETTLED_ANGLE;
 use crate::tuning::LONGEST_STEP;
 
@@ -51,16 +51,16 @@ impl NormalCircle {
     }
 }
 
-/// The greatest separation along the normals that suit a ruling: where its slope, which the extreme
+/// The greatest separation along the normals that suit a ruling, near a normal and the vertex at it: where its slope, which the extreme
 /// vertices show, vanishes. By Newton's method, as long as its steps are small and the extreme point moves smoothly.
 pub(super) fn along_ruling<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     ruling: &Ruling,
-    at: &NormalSeparation,
+    (about, near): (DVec3, &CsoVertex),
     cost: &mut Cost,
 ) -> Option<NormalSeparation> {
-    let mut circle = NormalCircle::new(ruling, at.normal);
-    let mut found = NormalSeparation::along(cso, circle.normal(), &at.extreme, cost);
+    let mut circle = NormalCircle::new(ruling, about);
+    let mut found = NormalSeparation::along(cso, circle.normal(), near, cost);
     for _ in 0..MAX_NEWTON_STEPS {
         let NormalCircle { u, v, .. } = circle;
         let w = found.extreme.w;

@@ -29,6 +29,17 @@ impl Cone {
             },
         }
     }
+
+    fn tangent_ball(&self) -> TangentBall {
+        let [sine, cosine] = lean(self);
+        TangentBall {
+            growth: [
+                2.0 * self.half_height() / (1.0 + sine),
+                self.rim_radius() / cosine,
+            ],
+            most: f64::INFINITY,
+        }
+    }
 }
 
 impl Body for Cone {
@@ -53,6 +64,14 @@ impl Body for Cone {
         let [sine, _] = lean(self);
         let is_along = (dir.y - sine).abs() < SMALL_TURN;
         is_along.then(|| (across * (around / squared_sine.sqrt())).with_y(height))
+    }
+
+    fn ball_at(&self, p: DVec3) -> (DVec3, f64) {
+        let share = 0.5 + 0.5 * p.y / self.half_height();
+        let radius = self.tangent_ball().radius(share.clamp(0.0, 1.0));
+        let [sine, cosine] = lean(self);
+        let around = p.with_y(0.0).normalize_or_zero();
+        (p - (around * cosine + DVec3::Y * sine) * radius, radius)
     }
 
     fn rulings(&self, _: DVec3, _: VertexId) -> impl Iterator<Item = Ruling> {
@@ -93,10 +112,7 @@ impl Body for Cone {
                 radius: 0.5 * radius + border / cosine,
                 slope: -self.slope(),
             },
-            ball: TangentBall {
-                growth: [2.0 * half_height / (1.0 + sine), radius / cosine],
-                most: f64::INFINITY,
-            },
+            ball: self.tangent_ball(),
         })
     }
 }

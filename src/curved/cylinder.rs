@@ -23,6 +23,13 @@ impl Cylinder {
             },
         }
     }
+
+    fn tangent_ball(&self) -> TangentBall {
+        TangentBall {
+            growth: [2.0 * self.half_height(); 2],
+            most: self.rim_radius(),
+        }
+    }
 }
 
 impl Body for Cylinder {
@@ -45,6 +52,12 @@ impl Body for Cylinder {
         let height = near.y.clamp(-half_height, half_height);
         let is_across = dir.y.abs() < SMALL_TURN;
         is_across.then(|| (across * (radius / squared_sine.sqrt())).with_y(height))
+    }
+
+    fn ball_at(&self, p: DVec3) -> (DVec3, f64) {
+        let share = 0.5 + 0.5 * p.y / self.half_height();
+        let radius = self.tangent_ball().radius(share.clamp(0.0, 1.0));
+        (p - p.with_y(0.0) * (radius / self.rim_radius()), radius)
     }
 
     fn rulings(&self, _: DVec3, _: VertexId) -> impl Iterator<Item = Ruling> {
@@ -81,10 +94,7 @@ impl Body for Cylinder {
                 radius: around,
                 slope: 0.0,
             },
-            ball: TangentBall {
-                growth: [2.0 * half_height; 2],
-                most: radius,
-            },
+            ball: self.tangent_ball(),
         })
     }
 }

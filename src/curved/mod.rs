@@ -9,6 +9,7 @@
 //!
 //! A new convex shape needs a [`Body`]: its support mapping, and the pieces that its surface consists of.
 
+mod at_rest;
 mod body;
 mod certificate;
 mod circle;
@@ -19,6 +20,7 @@ mod cylinder;
 mod discs;
 mod lines;
 mod on_flat;
+mod on_ruled;
 mod outline;
 mod over;
 mod patch;

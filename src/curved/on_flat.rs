@@ -1,51 +1,35 @@
-//! Shapes at rest: a flat side, and a point of the other shape under or over it, prove the answer without a patch.
+//! Bodies at rest on a flat side: a point of the other shape over or under it proves the answer.
 
 use glam::DVec3;
 
+use super::at_rest::AtRest;
 use super::body::Body;
 use super::piece::FlatSide;
-use super::query::{CurvedAnswer, CurvedQuery};
+use super::query::CurvedQuery;
 use crate::query::{LastContacts, cone_contains_ball};
 use crate::stats::Cost;
 use crate::support::Cso;
 use crate::tolerance::SAME_NORMAL;
-use crate::tuning::{FLUSH_TIE, STILL};
+use crate::tuning::FLUSH_TIE;
 
 impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
-    /// The answer along the normal of the flat side that gave the `last` normals, if the contacts hardly moved and
-    /// this side proves it. The normals are outward, each in the frame of its shape.
-    pub(super) fn on_flat_side(&mut self, last_normals: [DVec3; 2]) -> Option<CurvedAnswer> {
-        let (cso, last) = (self.cso, self.last?);
-        let [last_1, last_2] = last_normals;
-        if !last.are_within(last_1, STILL * cso.min_radius()) {
-            return None;
-        }
-        let second = self.on_second(last, last_2);
-        let (signed_distance, normal, on_1) = second.or_else(|| self.on_first(last, last_1))?;
-        if signed_distance > self.max_distance {
-            return None;
-        }
-        self.scratch.patch.aim_along(normal);
-        Some(CurvedAnswer::Near {
-            signed_distance,
-            normal,
-            on_1: on_1 + normal * self.border_radii[0],
-        })
-    }
-
-    /// The signed distance along the normal of the flat side of the first shape, and where, on that shape.
-    fn on_first(&mut self, last: &LastContacts, normal: DVec3) -> Option<(f64, DVec3, DVec3)> {
+    /// What the flat side of the first shape with this normal proves.
+    pub(super) fn on_first_flat(&mut self, last: &LastContacts, normal: DVec3) -> Option<AtRest> {
         let tolerance = self.tolerance();
         let flat = flat_side(self.cso.shape_1, normal, self.cost)?;
         let side = OnFlatSide::new(self.cso, flat, self.cost);
         let middle = || last.middle_of_deepest(flat.normal, FLUSH_TIE * tolerance);
         let middle = || self.cso.pose.point_to_2(middle());
         let [on_1, _] = side.proved(tolerance, middle, self.cost)?;
-        Some((side.separation, flat.normal, on_1))
+        Some(AtRest {
+            signed_distance: side.separation,
+            normal: flat.normal,
+            on_1,
+        })
     }
 
-    /// The same of the second shape.
-    fn on_second(&mut self, last: &LastContacts, outward: DVec3) -> Option<(f64, DVec3, DVec3)> {
+    /// The same of the second shape, whose normal is outward in its frame.
+    pub(super) fn on_second_flat(&mut self, last: &LastContacts, outward: DVec3) -> Option<AtRest> {
         let (cso, tolerance) = (self.cso, self.tolerance());
         let flat = flat_side(cso.shape_2, outward, self.cost)?;
         let inverse = cso.pose.inverse();
@@ -58,7 +42,11 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         let side = OnFlatSide::new(&reversed, flat, self.cost);
         let middle = || last.middle_of_deepest(normal, FLUSH_TIE * tolerance);
         let [_, on_1] = side.proved(tolerance, middle, self.cost)?;
-        Some((side.separation, normal, on_1))
+        Some(AtRest {
+            signed_distance: side.separation,
+            normal,
+            on_1,
+        })
     }
 }
 

@@ -44,6 +44,10 @@ impl<P: Polytope> Body for P {
         is_on_it.then_some(p)
     }
 
+    fn ball_at(&self, p: DVec3) -> (DVec3, f64) {
+        (p, 0.0)
+    }
+
     fn rulings(&self, _: DVec3, vertex: VertexId) -> impl Iterator<Item = Ruling> {
         let from = self.vertex(vertex);
         self.neighbors(vertex).filter_map(move |to| {

@@ -88,7 +88,7 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
             _ => Start::Warm,
         };
         if let Hint::Contact(normals, _) = hint
-            && let Some(answer) = self.on_flat_side(normals)
+            && let Some(answer) = self.at_rest(normals)
         {
             return Some((answer, Stage::Feature));
         }

@@ -144,7 +144,7 @@ pub(super) fn along_rulings<A: Body, B: Body>(
     let of_first = cso.shape_1.rulings(at.normal, at.extreme.ids[0]);
     let rulings = of_first.chain(rulings_2(cso, at));
     for ruling in rulings.filter(|ruling| is_near(ruling, at.normal)) {
-        if let Some(found) = along_ruling(cso, &ruling, at, cost) {
+        if let Some(found) = along_ruling(cso, &ruling, (at.normal, &at.extreme), cost) {
             best = Some(best.map_or(found, |best| best.or(found)));
         }
     }

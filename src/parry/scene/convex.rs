@@ -69,6 +69,10 @@ impl Body for Core {
         of_shape!(self, shape => shape.point_on_side(dir, near, cost))
     }
 
+    fn ball_at(&self, p: DVec3) -> (DVec3, f64) {
+        of_shape!(self, shape => shape.ball_at(p))
+    }
+
     fn rulings(&self, dir: DVec3, vertex: VertexId) -> impl Iterator<Item = Ruling> {
         let mut rulings = [None; MAX_RULINGS];
         of_shape!(self, shape => {
