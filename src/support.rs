@@ -5,10 +5,9 @@ use std::iter;
 
 use glam::{DVec3, Vec3};
 
+pub use crate::ids::{EdgeId, FaceId, ShapeId, VertexId};
 use crate::pose::RelativePose;
 use crate::stats::Cost;
-
-pub use crate::ids::{EdgeId, FaceId, ShapeId, VertexId};
 
 /// A convex shape as its support mapping, in its own frame.
 pub trait Support {
@@ -51,6 +50,7 @@ pub trait Support {
     }
 
     /// Tells the shape from all others, if it has such an id.
+    #[doc(hidden)]
     fn id(&self) -> Option<ShapeId> {
         None
     }
@@ -208,7 +208,7 @@ impl<A: Support, B: Support> Cso<'_, A, B> {
     }
 
     /// The difference of two vertices.
-    #[inline]
+    #[inline(always)]
     pub fn vertex(&self, ids: [VertexId; 2]) -> CsoVertex
     where
         A: Polytope,

@@ -193,21 +193,15 @@ fn common_line(
     if v.dot(beside).abs() > SIDE_BY_SIDE_SINE * v.length() {
         return None;
     }
-    let reach = |capsule: &Capsule| {
-        let [a, b] = [capsule.a, capsule.b].map(|p| p.dot(along));
-        [a.min(b), a.max(b)]
-    };
-    let ([low_1, high_1], [low_2, high_2]) = (reach(&first), reach(&second));
-    let (low, high) = (low_1.max(low_2), high_1.min(high_2));
+    let ends = [first, second].map(|capsule| [capsule.a, capsule.b].map(|p| p.dot(along)));
+    let [reach_1, reach_2] = ends.map(|[a, b]| [a.min(b), a.max(b)]);
+    let (low, high) = (reach_1[0].max(reach_2[0]), reach_1[1].min(reach_2[1]));
     if high - low < SHORT_LINE * first.radius.min(second.radius) {
         return None;
     }
-    let core = |capsule: &Capsule, place: f64| {
-        let [a, b] = [capsule.a, capsule.b].map(|p| p.dot(along));
-        capsule.at((place - a) / (b - a))
-    };
+    let core = |capsule: &Capsule, [a, b]: [f64; 2], at| capsule.at((at - a) / (b - a));
     let contact = |at: f64, place| {
-        let (c1, c2) = (core(&first, at), core(&second, at));
+        let (c1, c2) = (core(&first, ends[0], at), core(&second, ends[1], at));
         // Between the axes, in proportion to the radii, the surfaces are nearest.
         let offset = beside.dot(c2 - c1) * first.radius / radii;
         let on_line = c1 + beside * offset;

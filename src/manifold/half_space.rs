@@ -107,13 +107,12 @@ pub fn half_space_polygon(
             kept.push(from);
         }
         if is_near(&from) != is_near(&to) {
-            let edge = shape.face_edge(polygon, i);
-            let feature = edge.map_or(Feature::Face(face), Feature::Edge);
+            let edge = shape.face_edge(polygon, i).map(Feature::Edge);
             let share = (max_distance - from.distance) / (to.distance - from.distance);
             kept.push(PatchCorner {
                 on_1: from.on_1.lerp(to.on_1, share),
                 distance: max_distance,
-                features: [feature, near.features[1]],
+                features: [edge.unwrap_or(Feature::Face(face)), near.features[1]],
             });
         }
     }

@@ -4,10 +4,9 @@ use parry3d::query::Unsupported;
 use parry3d::shape::{Shape, ShapeType};
 
 use crate::curved::Body;
-use crate::map_pair::map_pair;
 use crate::parry::capsules::update_capsules;
 use crate::parry::convert::Core;
-use crate::parry::manifold::{CurvedPair, UpdateManifold};
+use crate::parry::manifold::{CurvedPair, CurvedUpdate, UpdateManifold};
 use crate::parry::order::PairOrder;
 use crate::parry::workspace::ThreadWorkspace;
 
@@ -26,17 +25,28 @@ pub(crate) fn update_without_hull<M: Default, C: Default + Copy>(
     mut update: UpdateManifold<'_, M, C>,
 ) -> Result<(), Unsupported> {
     // The curved shape comes second in the kernels.
-    let Some(order) = PairOrder::with_second(shapes.map(is_curved)) else {
-        return update_capsules(update.pos12, shapes, update.prediction, update.manifold);
-    };
-    let cores = map_pair(order.to_kernel(shapes), Core::of);
-    let [Some((first, border_1)), Some((second, border_2))] = &cores else {
+    match PairOrder::with_second(shapes.map(is_curved)) {
+        Some(order) => update_curved(order, shapes, &mut update.curved()),
+        None => update_capsules(update.pos12, shapes, update.prediction, update.manifold),
+    }
+}
+
+fn update_curved(
+    order: PairOrder,
+    shapes: [&dyn Shape; 2],
+    update: &mut CurvedUpdate<'_>,
+) -> Result<(), Unsupported> {
+    let [first, second] = order.to_kernel(shapes);
+    // Each on its own: as parts of a pair they would be copied.
+    let first = Core::of(first);
+    let second = Core::of(second);
+    let (Some((first, border_1)), Some((second, border_2))) = (&first, &second) else {
         return Err(Unsupported);
     };
     let mut pair = PairUpdate {
         border_radii: [*border_1, *border_2].map(f64::from),
         order,
-        update: &mut update,
+        update,
     };
     match second {
         Core::Cylinder(second) => pair.with(first, second),
@@ -46,13 +56,13 @@ pub(crate) fn update_without_hull<M: Default, C: Default + Copy>(
 }
 
 /// What is left to do once the types of both cores are known.
-struct PairUpdate<'u, 'a, M, C> {
+struct PairUpdate<'u, 'a> {
     border_radii: [f64; 2],
     order: PairOrder,
-    update: &'u mut UpdateManifold<'a, M, C>,
+    update: &'u mut CurvedUpdate<'a>,
 }
 
-impl<M: Default, C: Default + Copy> PairUpdate<'_, '_, M, C> {
+impl PairUpdate<'_, '_> {
     /// Parry's routine for balls is exact.
     fn with(&mut self, first: &Core, second: &impl Body) -> Result<(), Unsupported> {
         match first {
@@ -71,9 +81,6 @@ impl<M: Default, C: Default + Copy> PairUpdate<'_, '_, M, C> {
             border_radii: self.border_radii,
             order: self.order,
         };
-        ThreadWorkspace::with(|thread| {
-            self.update
-                .update_curved(&pair, &mut thread.workspace.curved)
-        })
+        ThreadWorkspace::with(|thread| self.update.run(&pair, &mut thread.workspace.curved))
     }
 }

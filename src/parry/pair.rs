@@ -10,12 +10,13 @@ use crate::map_pair::map_pair;
 use crate::parry::convert::{self, Core, HalfSpace};
 use crate::parry::hull_cache::HullCache;
 use crate::parry::hull_cache::epoch::Epoch;
+use crate::parry::instances::HullPartner;
 use crate::parry::operand::{Operand, PreparedOperand};
 use crate::parry::order::PairOrder;
 use crate::parry::workspace::{ThreadWorkspace, Workspace};
 use crate::pose::{RelativePose, ValidPose};
 use crate::stats::Left;
-use crate::support::{Cso, Polytope, Support};
+use crate::support::{Cso, Support};
 use crate::tolerance::MIN_DIRECTED_DISTANCE;
 
 /// A hull and another shape, as the kernels see a pair: in the frame of the hull. Scene queries have pairs
@@ -50,7 +51,7 @@ impl<'a, B, A> Pair<'a, B, A> {
     }
 
     /// The size of both shapes without borders.
-    #[inline(always)]
+    #[inline]
     pub fn size(&self) -> f64
     where
         A: Support,
@@ -98,7 +99,7 @@ pub(crate) trait PairVisitor: Sized {
     type Answer;
 
     /// The other shape is a polytope.
-    fn visit<B: Polytope>(
+    fn visit<B: HullPartner>(
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,
@@ -253,7 +254,7 @@ impl HullOperand<'_> {
     #[inline]
     fn polytope<V: PairVisitor>(
         &self,
-        other: &impl Polytope,
+        other: &impl HullPartner,
         border_radius: Real,
         visitor: &mut V,
     ) -> Result<V::Answer, Unsupported> {

@@ -36,6 +36,7 @@ mod seeds;
 mod types;
 mod witness;
 
+pub(crate) use certificate::verdict::Verdict;
 pub(crate) use certificate::{cone_contains_ball, inset};
 
 pub use bounds::{Certificate, SeparationBounds};
@@ -47,16 +48,15 @@ pub use feature::Feature;
 pub(crate) use feature::vertices;
 pub(crate) use last_contacts::{LastContacts, first_least};
 pub use patch::{ContactPatch, PatchVertex};
-pub(crate) use pipeline::{Distance, Full, Sink, Start};
+pub(crate) use pipeline::{Distance, Found, Full, Sink, Start, Strategy};
 pub use types::{Answer, PairMemory, Proximity};
 pub(crate) use witness::moved_apart;
 
 pub use crate::epa::EpaScratch;
 pub use crate::gjk::SeparatingAxis;
 pub use crate::pose::RelativePose;
-pub use crate::ray_cast::{Impact, RayCast, ray_cast};
 pub use crate::stats::Cost;
-pub use crate::support::{Cso, EdgeId, FaceId, Polytope, ShapeId, Support, VertexId};
+pub use crate::support::{Cso, EdgeId, FaceId, Polytope, Support, VertexId};
 
 use crate::epa::PolytopeCache;
 use crate::tolerance::DEPTH_GAP;

@@ -66,7 +66,7 @@ pub(crate) trait Sink {
 }
 
 /// The answer of a search, and the stage that found it.
-pub(super) type Found = Option<(Answer, Stage)>;
+pub(crate) type Found = Option<(Answer, Stage)>;
 
 /// How a query continues if neither the bounding spheres nor a remembered axis separate the shapes.
 pub(crate) trait Strategy<A: Support, B: Support>: Copy {

@@ -1,18 +1,19 @@
 //! Manifolds of pairs with a cylinder or a cone.
 
 use glam::{DVec3, Vec3};
+use parry3d::math::{Pose, Real};
 use parry3d::query::Unsupported;
 
-use super::UpdateManifold;
+use super::curved_manifold::CurvedManifold;
 use super::normals::Normals;
-use super::record::{AxisFrame, KernelManifold};
-use crate::curved::{self, Body, CurvedAnswer, CurvedQuery, CurvedScratch, Hint, Patch};
+use super::record::AxisFrame;
+use crate::curved::{self, Body, CurvedAnswer, CurvedQuery, CurvedScratch, Patch};
 use crate::manifold::Contacts;
 use crate::parry::constraints::{ConstrainedPair, Constraints};
 use crate::parry::order::PairOrder;
 use crate::parry::pair::valid_pose;
-use crate::query::{Feature, LastContacts, PairMemory, Proximity};
-use crate::stats::{Cost, Stage};
+use crate::query::{Feature, LastContacts, Proximity};
+use crate::stats::{Cost, SharedStats, Stage};
 use crate::support::{Cso, FaceId, VertexId};
 use crate::tolerance::{DEPTH_GAP, MIN_DIRECTED_DISTANCE, UNCORRECTED};
 use crate::tuning::ABSURD_DEPTH;
@@ -24,9 +25,18 @@ pub(crate) struct CurvedPair<'a, A, B> {
     pub order: PairOrder,
 }
 
-impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
-    /// Brings the manifold of two shapes up to date, at least one of which is curved.
-    pub(crate) fn update_curved<A: Body, B: Body>(
+/// Brings a manifold up to date.
+pub(crate) struct CurvedUpdate<'a> {
+    pub pos12: &'a Pose,
+    pub prediction: Real,
+    pub constraints: &'a [Constraints<'a>; 2],
+    pub(super) manifold: &'a mut dyn CurvedManifold,
+    pub stats: &'a SharedStats,
+}
+
+impl CurvedUpdate<'_> {
+    /// Of two shapes, at least one of which is curved.
+    pub fn run<A: Body, B: Body>(
         &mut self,
         pair: &CurvedPair<'_, A, B>,
         scratch: &mut CurvedScratch,
@@ -40,10 +50,9 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         let borders = pair.border_radii[0] + pair.border_radii[1];
         let touching = MIN_DIRECTED_DISTANCE * (cso.size() + borders);
         let max_distance = f64::from(self.prediction) + touching;
-        let mut manifold =
-            KernelManifold::with_borders(self.manifold, pair.order, AxisFrame::of(&cso));
         let mut cost = Cost::default();
-        let last = manifold.last_contacts(&pose);
+        let last = self.manifold.last_contacts(pair.order, &pose);
+        let hint = self.manifold.hint(pair.order, AxisFrame::of(&cso), borders);
         let mut query = CurvedQuery {
             cso: &cso,
             border_radii: pair.border_radii,
@@ -52,10 +61,14 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
             scratch,
             cost: &mut cost,
         };
-        let (answer, mut stage) = query.run(hint(&manifold, borders)).ok_or(Unsupported)?;
+        let (answer, mut stage) = query.run(hint).ok_or(Unsupported)?;
         match answer {
-            CurvedAnswer::SpheresApart => manifold.forget(),
-            CurvedAnswer::Separated(apart) => manifold.set_axis(apart.axis, apart.ids),
+            CurvedAnswer::SpheresApart => self.manifold.forget(),
+            CurvedAnswer::Separated(apart) => {
+                let frame = AxisFrame::of(&cso);
+                self.manifold
+                    .set_axis(pair.order, frame, apart.axis, apart.ids);
+            }
             CurvedAnswer::Near {
                 signed_distance,
                 normal,
@@ -63,6 +76,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
             } => {
                 let near = Near {
                     cso: &cso,
+                    order: pair.order,
                     border_radii: pair.border_radii,
                     least: signed_distance - borders,
                     normal,
@@ -70,14 +84,7 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
                     max_distance,
                     last: last.as_ref(),
                 };
-                let is_kept = if let [Constraints::None, Constraints::None] = self.constraints {
-                    near.update(&mut manifold, &mut scratch.patch)
-                } else {
-                    let constraints = (*self.constraints, self.pos12);
-                    near.update_constrained(&mut manifold, constraints, &mut scratch.patch);
-                    false
-                };
-                if is_kept && stage == Stage::Feature {
+                if self.update_contacts(&near, &mut scratch.patch) && stage == Stage::Feature {
                     stage = Stage::Kept;
                 }
             }
@@ -85,26 +92,25 @@ impl<M: Default, C: Default + Copy> UpdateManifold<'_, M, C> {
         self.stats.record(stage, &cost);
         Ok(())
     }
-}
 
-/// What a manifold remembers of its pair. With `borders` around them, the cores may be apart although the
-/// shapes overlap.
-fn hint<M, C>(manifold: &KernelManifold<'_, M, C>, borders: f64) -> Hint {
-    if let Some(least) = manifold.least_distance() {
-        return match manifold.normals() {
-            Some(normals) => Hint::Contact(normals, f64::from(least) + borders < 0.0),
-            None => Hint::None,
-        };
-    }
-    match manifold.memory(None) {
-        PairMemory::Axis(axis, ids) => Hint::Apart(axis, ids),
-        _ => Hint::None,
+    /// Returns whether the contacts stayed where they were.
+    fn update_contacts<A: Body, B: Body>(
+        &mut self,
+        near: &Near<'_, '_, A, B>,
+        patch: &mut Patch,
+    ) -> bool {
+        if let [Constraints::None, Constraints::None] = self.constraints {
+            return near.update(self.manifold, patch);
+        }
+        near.update_constrained(self, patch);
+        false
     }
 }
 
 /// Shapes that are near each other.
 struct Near<'a, 'c, A, B> {
     cso: &'a Cso<'c, A, B>,
+    order: PairOrder,
     border_radii: [f64; 2],
     /// The signed distance with the borders.
     least: f64,
@@ -126,20 +132,14 @@ impl<A: Body, B: Body> Near<'_, '_, A, B> {
     }
 
     /// Leaves the contacts where they are, if that is right, or chooses new ones. Returns whether they stayed.
-    fn update<M, C: Default + Copy>(
-        &self,
-        manifold: &mut KernelManifold<'_, M, C>,
-        patch: &mut Patch,
-    ) -> bool {
+    fn update(&self, manifold: &mut dyn CurvedManifold, patch: &mut Patch) -> bool {
         let near = self.proximity();
         let normals = Normals::of(&near, self.cso.pose);
         let radius = self.cso.min_radius();
-        let is_kept = manifold
-            .keep_places(self.last, self.least, &normals, radius)
-            .is_some();
+        let is_kept = manifold.keep_places(self.order, self.last, self.least, &normals, radius);
         if !is_kept {
             patch.complete(self.cso, self.border_radii);
-            manifold.set_contacts(normals.rounded, &self.contacts(patch));
+            manifold.set_contacts(self.order, normals.rounded, &self.contacts(patch));
         }
         is_kept
     }
@@ -151,36 +151,38 @@ impl<A: Body, B: Body> Near<'_, '_, A, B> {
     }
 
     /// Like [`update`](Self::update), along normals that the constraints correct.
-    fn update_constrained<M, C: Default + Copy>(
-        &self,
-        manifold: &mut KernelManifold<'_, M, C>,
-        (constraints, pos12): ([Constraints<'_>; 2], &parry3d::math::Pose),
-        patch: &mut Patch,
-    ) {
+    fn update_constrained(&self, update: &mut CurvedUpdate<'_>, patch: &mut Patch) {
+        let manifold = &mut *update.manifold;
         let normals = Normals::of(&self.proximity(), self.cso.pose);
         let pair = ConstrainedPair {
             cso: self.cso,
-            order: manifold.order,
-            constraints,
-            pos12,
+            order: self.order,
+            constraints: *update.constraints,
+            pos12: update.pos12,
             max_distance: self.max_distance + self.border_radii[0] + self.border_radii[1],
         };
-        let Some(found) = pair.correct(manifold.order.to_caller(normals.rounded)) else {
-            manifold.set_axis(self.normal, [VertexId::default(); 2]);
+        let Some(found) = pair.correct(self.order.to_caller(normals.rounded)) else {
+            self.set_axis(manifold);
             return;
         };
-        let corrected = manifold.order.to_kernel(found.normals);
+        let corrected = self.order.to_kernel(found.normals);
         if corrected[0].abs_diff_eq(normals.rounded[0], UNCORRECTED) {
             self.update(manifold, patch);
         } else if let Some(contacts) = self.along(corrected, patch) {
-            manifold.set_contacts(corrected, &contacts);
+            manifold.set_contacts(self.order, corrected, &contacts);
         } else if self.least < 0.0 {
             // What overlaps must be pushed out, if not along the corrected normal.
             patch.find(self.cso, self.normal, self.border_radii);
-            manifold.set_contacts(normals.rounded, &self.contacts(patch));
+            manifold.set_contacts(self.order, normals.rounded, &self.contacts(patch));
         } else {
-            manifold.set_axis(self.normal, [VertexId::default(); 2]);
+            self.set_axis(manifold);
         }
+    }
+
+    /// Leaves a place to start from, and no contact.
+    fn set_axis(&self, manifold: &mut dyn CurvedManifold) {
+        let frame = AxisFrame::of(self.cso);
+        manifold.set_axis(self.order, frame, self.normal, [VertexId::default(); 2]);
     }
 
     /// The contacts along a corrected normal. The depth that the query found is along another one.

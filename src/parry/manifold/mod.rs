@@ -1,6 +1,7 @@
 //! The contact manifold of two convex shapes, from frame to frame.
 
 mod curved;
+mod curved_manifold;
 mod flush;
 mod half_space;
 mod inherit;
@@ -18,12 +19,13 @@ use crate::parry::apart_cache::ApartPair;
 use crate::parry::constraints::Constraints;
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space as plane;
+use crate::parry::instances::{FullWithHull, HullPartner};
 use crate::parry::pair::{Pair, PairVisitor, valid_pose};
 use crate::parry::workspace::Workspace;
-use crate::query::{Full, Query};
+use crate::query::Query;
 use crate::stats::{Cost, SharedStats, Stage};
-use crate::support::{Polytope, Support};
-pub(crate) use curved::CurvedPair;
+use crate::support::Support;
+pub(crate) use curved::{CurvedPair, CurvedUpdate};
 use half_space::HalfSpaceContacts;
 use polytopes::PolytopeContacts;
 use record::AxisFrame;
@@ -44,7 +46,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
 
     // perf: in a call the pair would go through memory, which small queries notice.
     #[inline(always)]
-    fn visit<B: Polytope>(
+    fn visit<B: HullPartner>(
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,
@@ -99,14 +101,25 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             border_radii: pair.border_radii,
             order: pair.order,
         };
-        self.update_curved(&pair, &mut workspace.curved)
+        self.curved().run(&pair, &mut workspace.curved)
     }
 }
 
 impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
+    /// The same for pairs with a cylinder or a cone.
+    pub fn curved(&mut self) -> CurvedUpdate<'_> {
+        CurvedUpdate {
+            pos12: self.pos12,
+            prediction: self.prediction,
+            constraints: self.constraints,
+            manifold: &mut *self.manifold,
+            stats: self.stats,
+        }
+    }
+
     /// Runs the query, and keeps the proof if the shapes are still apart as the manifold says.
     #[inline]
-    fn query<B: Polytope>(
+    fn query<B: HullPartner>(
         &mut self,
         pair: &Pair<'_, B>,
         max_distance: f64,
@@ -138,7 +151,7 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
             is_kept: false,
             still_apart: None,
         };
-        let stage = query.run_into(Full, &mut sink).ok_or(Unsupported)?;
+        let stage = query.run_into(FullWithHull, &mut sink).ok_or(Unsupported)?;
         let (apart_by, stage) = (sink.still_apart(stage, &cso), sink.stage(stage));
         if let (Some(separation), Some(apart)) = (apart_by, self.apart_pair(pair)) {
             let proofs = &mut workspace.apart_cache;

@@ -7,6 +7,7 @@ use parry3d::shape::Shape;
 use crate::curved::{Body, CurvedAnswer, CurvedQuery, Hint};
 use crate::epa;
 use crate::parry::convert::{Core, HalfSpace};
+use crate::parry::instances::{FullWithHull, HullPartner};
 use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
 use crate::parry::scene::caller::{KernelFrame, NearestPoints};
 use crate::parry::scene::capsules;
@@ -14,9 +15,9 @@ use crate::parry::scene::convex;
 use crate::parry::scene::separation::{CoreSeparation, SeparationQuery, over_half_space};
 use crate::parry::workspace::Workspace;
 use crate::pose::ValidPose;
-use crate::query::{Full, Query, moved_apart};
+use crate::query::{Query, moved_apart};
 use crate::stats::Cost;
-use crate::support::{Polytope, Support};
+use crate::support::Support;
 use crate::tolerance::{GJK_CURVED_GAP, GJK_GAP_OF_SIZE};
 
 /// The deepest contact of shapes that overlap or are at most `prediction` apart.
@@ -133,7 +134,7 @@ impl ContactQuery<'_> {
 impl PairVisitor for ContactQuery<'_> {
     type Answer = Option<Contact>;
 
-    fn visit<B: Polytope>(
+    fn visit<B: HullPartner>(
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,
@@ -143,7 +144,7 @@ impl PairVisitor for ContactQuery<'_> {
         let max_distance = pair.core_distance(self.prediction, cso.size());
         let mut sink = NearestPoints::new(pair, &pose);
         Query::new(&cso, max_distance, &mut workspace.epa, &mut Cost::default())
-            .run_into(Full, &mut sink)
+            .run_into(FullWithHull, &mut sink)
             .ok_or(Unsupported)?;
         Ok(sink.nearest.map(|near| near.contact()))
     }

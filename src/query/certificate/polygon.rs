@@ -58,13 +58,8 @@ fn inset_among(
     let mut is_inside = f32x4::ZERO.simd_eq(f32x4::ZERO);
     for first in (0..count).step_by(4) {
         // After the last corner, the first ones come again.
-        let number = |i: usize| {
-            numbered(if first + i < count {
-                first + i
-            } else {
-                first + i - count
-            })
-        };
+        let wrapped = |i: usize| if i < count { i } else { i - count };
+        let number = |i: usize| numbered(wrapped(first + i));
         let [a, b, c, d] = shape.face_points_x4(face, [0, 1, 2, 3].map(number));
         let next = shape.vertex(shape.face_vertex(face, number(4))).as_vec3();
         let row = |axis: usize| {
