@@ -23,14 +23,16 @@ use parry3d::shape::ConvexPolyhedron;
 
 use crate::hull::Hull;
 use crate::parry::int_hash::IntMap;
-use aging::{Aging, KEEP_BYTES};
+use aging::Aging;
 use epoch::Epoch;
 use registry::PreparedHull;
 
 /// Unused hulls are dropped after this many pairs, and whenever this share of the allowed bytes has been
 /// prepared.
 const LOOK_AFTER: u32 = 4096;
-const LOOK_AFTER_BYTES: usize = KEEP_BYTES as usize / 4;
+const LOOK_AFTER_BYTES: usize = KEEP / 4;
+/// How many bytes are kept even if unused.
+const KEEP: usize = aging::KEEP_BYTES as usize;
 
 /// A thread's prepared hulls.
 pub(crate) struct HullCache {
@@ -52,7 +54,7 @@ impl Default for HullCache {
             recent: DirectMapped::default(),
             slots: Vec::new(),
             bytes: 0,
-            look_at: KEEP_BYTES as usize + LOOK_AFTER_BYTES,
+            look_at: KEEP + LOOK_AFTER_BYTES,
             look_after: LOOK_AFTER,
             aging: Aging::default(),
         }
@@ -126,9 +128,9 @@ impl HullCache {
     fn look_after(&mut self) {
         self.look_after = LOOK_AFTER;
         self.aging.pass();
-        if self.bytes > KEEP_BYTES as usize {
+        if self.bytes > KEEP {
             self.evict();
-            self.look_at = self.bytes.max(KEEP_BYTES as usize) + LOOK_AFTER_BYTES;
+            self.look_at = self.bytes.max(KEEP) + LOOK_AFTER_BYTES;
         }
     }
 
