@@ -5,8 +5,9 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::collections::VecDeque;
+use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Mutex, MutexGuard, PoisonError, mpsc};
+use std::sync::{Mutex, PoisonError, mpsc};
 use std::thread;
 
 use isa_gjk::IsaGjkDispatcher;
@@ -43,9 +44,13 @@ fn bytes() -> usize {
     BYTES.load(Relaxed)
 }
 
-fn take_turn() -> MutexGuard<'static, ()> {
+/// Runs a test alone, on a thread of its own: what threads keep is freed as they end.
+fn in_turn(test: impl FnOnce() + Send + 'static) {
     static TURN: Mutex<()> = Mutex::new(());
-    TURN.lock().unwrap_or_else(PoisonError::into_inner)
+    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Err(panic) = thread::spawn(test).join() {
+        resume_unwind(panic);
+    }
 }
 
 /// A hull of points on a sphere.
@@ -86,151 +91,157 @@ fn churn(dispatcher: &IsaGjkDispatcher, rng: &mut Rng, hulls: usize, live: usize
 
 #[test]
 fn hulls_that_came_and_went_take_no_memory() {
-    let _turn = take_turn();
-    let dispatcher = IsaGjkDispatcher::default();
-    let mut rng = Rng::new(131);
-    let before = bytes();
-    let most = churn(&dispatcher, &mut rng, 5_000, 30);
-    assert!(most < 48 * MIB, "{} MiB at most", most / MIB);
-    dispatcher.trim();
-    let stays = bytes().saturating_sub(before);
-    assert!(stays < MIB, "{stays} bytes stay");
+    in_turn(|| {
+        let dispatcher = IsaGjkDispatcher::default();
+        let mut rng = Rng::new(131);
+        let before = bytes();
+        let most = churn(&dispatcher, &mut rng, 5_000, 30);
+        assert!(most < 48 * MIB, "{} MiB at most", most / MIB);
+        dispatcher.trim();
+        let stays = bytes().saturating_sub(before);
+        assert!(stays < MIB, "{stays} bytes stay");
+    });
 }
 
 /// A hull that comes, is in a world for a step, and goes.
 #[test]
 fn debris_of_a_world_takes_no_memory() {
-    let _turn = take_turn();
-    let dispatcher = IsaGjkDispatcher::default();
-    let mut rng = Rng::new(132);
-    let mut world = PhysicsWorld {
-        narrow_phase: NarrowPhase::with_query_dispatcher(dispatcher),
-        ..PhysicsWorld::default()
-    };
-    world.insert_collider(ColliderBuilder::new(round(&mut rng, 60, 3.0)), None);
-    let (before, mut most) = (bytes(), 0);
-    for _ in 0..4_500 {
-        let shape = round(&mut rng, 100, 0.4);
-        let body = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 3.2, 0.0));
-        let (body, _) = world.insert(body, ColliderBuilder::new(shape));
-        world.step();
-        world.remove_body_with_colliders(body, true);
-        most = most.max(bytes().saturating_sub(before));
-    }
-    assert!(most < 48 * MIB, "{} MiB at most", most / MIB);
+    in_turn(|| {
+        let dispatcher = IsaGjkDispatcher::default();
+        let mut rng = Rng::new(132);
+        let mut world = PhysicsWorld {
+            narrow_phase: NarrowPhase::with_query_dispatcher(dispatcher),
+            ..PhysicsWorld::default()
+        };
+        world.insert_collider(ColliderBuilder::new(round(&mut rng, 60, 3.0)), None);
+        let (before, mut most) = (bytes(), 0);
+        for _ in 0..4_500 {
+            let shape = round(&mut rng, 100, 0.4);
+            let body = RigidBodyBuilder::dynamic().translation(Vector::new(0.0, 3.2, 0.0));
+            let (body, _) = world.insert(body, ColliderBuilder::new(shape));
+            world.step();
+            world.remove_body_with_colliders(body, true);
+            most = most.max(bytes().saturating_sub(before));
+        }
+        assert!(most < 48 * MIB, "{} MiB at most", most / MIB);
+    });
 }
 
 #[test]
 fn trimming_reaches_other_threads_and_changes_no_answer() {
-    let _turn = take_turn();
-    let dispatcher = IsaGjkDispatcher::default();
-    let (to_thread, orders) = mpsc::channel();
-    let (to_us, answers) = mpsc::channel();
-    let other = thread::spawn({
-        let dispatcher = dispatcher.clone();
-        move || {
-            let mut rng = Rng::new(133);
-            let shapes: Vec<_> = (0..200).map(|_| round(&mut rng, 100, 0.5)).collect();
-            for few in orders {
-                let shapes = if few { &shapes[..2] } else { &shapes };
-                let pose = Pose::translation(0.6, 0.5, 0.4);
-                let manifold = |pair: &[SharedShape]| {
-                    cold_manifold(&dispatcher, &pose, [&pair[0], &pair[1]], 0.1)
-                };
-                let manifolds = shapes.windows(2).map(manifold);
-                let text = format!("{:?}", manifolds.collect::<Vec<_>>());
-                to_us.send(text).expect("somebody waits");
+    in_turn(|| {
+        let dispatcher = IsaGjkDispatcher::default();
+        let (to_thread, orders) = mpsc::channel();
+        let (to_us, answers) = mpsc::channel();
+        let other = thread::spawn({
+            let dispatcher = dispatcher.clone();
+            move || {
+                let mut rng = Rng::new(133);
+                let shapes: Vec<_> = (0..200).map(|_| round(&mut rng, 100, 0.5)).collect();
+                for few in orders {
+                    let shapes = if few { &shapes[..2] } else { &shapes };
+                    let pose = Pose::translation(0.6, 0.5, 0.4);
+                    let manifold = |pair: &[SharedShape]| {
+                        cold_manifold(&dispatcher, &pose, [&pair[0], &pair[1]], 0.1)
+                    };
+                    let manifolds = shapes.windows(2).map(manifold);
+                    let text = format!("{:?}", manifolds.collect::<Vec<_>>());
+                    to_us.send(text).expect("somebody waits");
+                }
             }
-        }
+        });
+        let ask = |few: bool| {
+            to_thread.send(few).expect("somebody listens");
+            answers.recv().expect("an answer")
+        };
+        drop(ask(true));
+        let before = bytes();
+        let all = ask(false);
+        let kept = bytes() - before;
+        dispatcher.trim();
+        drop(ask(true));
+        let left = bytes().saturating_sub(before + all.len());
+        assert!(
+            kept > 2 * MIB && left < MIB / 2,
+            "{left} of {kept} bytes are left"
+        );
+        assert_eq!(all, ask(false));
+        drop(to_thread);
+        other.join().expect("no panic");
     });
-    let ask = |few: bool| {
-        to_thread.send(few).expect("somebody listens");
-        answers.recv().expect("an answer")
-    };
-    drop(ask(true));
-    let before = bytes();
-    let all = ask(false);
-    let kept = bytes() - before;
-    dispatcher.trim();
-    drop(ask(true));
-    let left = bytes().saturating_sub(before + all.len());
-    assert!(
-        kept > 2 * MIB && left < MIB / 2,
-        "{left} of {kept} bytes are left"
-    );
-    assert_eq!(all, ask(false));
-    drop(to_thread);
-    other.join().expect("no panic");
 }
 
 /// As `docs/measured.md` states it.
 #[test]
 fn a_prepared_hull_takes_what_is_stated() {
-    let _turn = take_turn();
-    let dispatcher = IsaGjkDispatcher::default();
-    let mut rng = Rng::new(136);
-    let ball = SharedShape::ball(0.5);
-    touch(&dispatcher, [&round(&mut rng, 30, 0.5), &ball]);
-    for vertices in [8, 12, 32, 60, 100, 300] {
-        let hulls: Vec<_> = (0..200).map(|_| round(&mut rng, vertices, 0.5)).collect();
-        let before = bytes();
-        for hull in &hulls {
-            touch(&dispatcher, [hull, &ball]);
+    in_turn(|| {
+        let dispatcher = IsaGjkDispatcher::default();
+        let mut rng = Rng::new(136);
+        let ball = SharedShape::ball(0.5);
+        touch(&dispatcher, [&round(&mut rng, 30, 0.5), &ball]);
+        for vertices in [8, 12, 32, 60, 100, 300] {
+            let hulls: Vec<_> = (0..200).map(|_| round(&mut rng, vertices, 0.5)).collect();
+            let before = bytes();
+            for hull in &hulls {
+                touch(&dispatcher, [hull, &ball]);
+            }
+            let each = (bytes() - before) / hulls.len();
+            println!("{vertices} vertices: {each} bytes");
+            assert!(
+                each < 1000 + 160 * vertices,
+                "{vertices} vertices: {each} bytes"
+            );
+            dispatcher.trim();
         }
-        let each = (bytes() - before) / hulls.len();
-        println!("{vertices} vertices: {each} bytes");
-        assert!(
-            each < 1000 + 160 * vertices,
-            "{vertices} vertices: {each} bytes"
-        );
-        dispatcher.trim();
-    }
+    });
 }
 
 /// More hulls than may stay unused, each queried in turn.
 #[test]
 fn many_hulls_in_use_are_prepared_once() {
-    let _turn = take_turn();
-    let dispatcher = IsaGjkDispatcher::default();
-    let mut rng = Rng::new(134);
-    let ball = SharedShape::ball(0.5);
-    let hulls: Vec<_> = (0..450).map(|_| round(&mut rng, 1000, 0.5)).collect();
-    let before = bytes();
-    let ask_all = || {
-        let calls = CALLS.load(Relaxed);
-        for hull in &hulls {
-            touch(&dispatcher, [hull, &ball]);
-        }
-        CALLS.load(Relaxed) - calls
-    };
-    let first = ask_all();
-    // Hulls that were dropped before it was known that all are in use are prepared once more.
-    let second = ask_all();
-    assert!(second < first, "{second} after {first} allocations");
-    let later = [(); 5].map(|()| ask_all());
-    assert_eq!(later, [0; 5], "after {first} and {second}");
-    let kept = bytes() - before;
-    assert!(kept > 40 * MIB, "only {} MiB of hulls", kept / MIB);
+    in_turn(|| {
+        let dispatcher = IsaGjkDispatcher::default();
+        let mut rng = Rng::new(134);
+        let ball = SharedShape::ball(0.5);
+        let hulls: Vec<_> = (0..450).map(|_| round(&mut rng, 1000, 0.5)).collect();
+        let before = bytes();
+        let ask_all = || {
+            let calls = CALLS.load(Relaxed);
+            for hull in &hulls {
+                touch(&dispatcher, [hull, &ball]);
+            }
+            CALLS.load(Relaxed) - calls
+        };
+        let first = ask_all();
+        // Hulls that were dropped before it was known that all are in use are prepared once more.
+        let second = ask_all();
+        assert!(second < first, "{second} after {first} allocations");
+        let later = [(); 5].map(|()| ask_all());
+        assert_eq!(later, [0; 5], "after {first} and {second}");
+        let kept = bytes() - before;
+        assert!(kept > 40 * MIB, "only {} MiB of hulls", kept / MIB);
+    });
 }
 
 /// A hull that was dropped, as others came, is answered as before when it comes back.
 #[test]
 fn what_was_dropped_is_answered_as_before() {
-    let _turn = take_turn();
-    let dispatcher = IsaGjkDispatcher::default();
-    let mut rng = Rng::new(135);
-    let pairs: Vec<_> = (0..50)
-        .map(|_| [(); 2].map(|()| round(&mut rng, 40, 0.5)))
-        .collect();
-    let answers = || {
-        let pose = Pose::translation(0.6, 0.5, 0.4);
-        let answer =
-            |pair: &[SharedShape; 2]| cold_manifold(&dispatcher, &pose, pair.each_ref(), 0.1);
-        format!("{:?}", pairs.iter().map(answer).collect::<Vec<_>>())
-    };
-    let before = answers();
-    churn(&dispatcher, &mut rng, 5_000, 30);
-    let calls = CALLS.load(Relaxed);
-    assert_eq!(before, answers());
-    assert!(CALLS.load(Relaxed) - calls > 50 * 10, "nothing was dropped");
+    in_turn(|| {
+        let dispatcher = IsaGjkDispatcher::default();
+        let mut rng = Rng::new(135);
+        let pairs: Vec<_> = (0..50)
+            .map(|_| [(); 2].map(|()| round(&mut rng, 40, 0.5)))
+            .collect();
+        let answers = || {
+            let pose = Pose::translation(0.6, 0.5, 0.4);
+            let answer =
+                |pair: &[SharedShape; 2]| cold_manifold(&dispatcher, &pose, pair.each_ref(), 0.1);
+            format!("{:?}", pairs.iter().map(answer).collect::<Vec<_>>())
+        };
+        let before = answers();
+        churn(&dispatcher, &mut rng, 5_000, 30);
+        let calls = CALLS.load(Relaxed);
+        assert_eq!(before, answers());
+        assert!(CALLS.load(Relaxed) - calls > 50 * 10, "nothing was dropped");
+    });
 }
