@@ -108,12 +108,10 @@ pub trait Polytope: Support {
     /// The `i`-th vertex of a face, counter-clockwise seen from outside.
     fn face_vertex(&self, face: FaceId, i: usize) -> VertexId;
 
-    /// Four of the corners of a face, in f32.
+    /// Some corners of a face, in f32.
     #[inline(always)]
-    fn face_points_x4(&self, face: FaceId, numbers: [usize; 4]) -> [Vec3; 4] {
-        let [a, b, c, d] = numbers;
-        let corner = |i| self.vertex(self.face_vertex(face, i)).as_vec3();
-        [corner(a), corner(b), corner(c), corner(d)]
+    fn face_points_at<const N: usize>(&self, face: FaceId, numbers: [usize; N]) -> [Vec3; N] {
+        numbers.map(|i| self.vertex(self.face_vertex(face, i)).as_vec3())
     }
 
     /// How far inside a face a point of its plane is, negative outside, if this costs less than a look at its

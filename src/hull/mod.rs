@@ -227,11 +227,9 @@ impl Polytope for Hull {
     }
 
     #[inline(always)]
-    fn face_points_x4(&self, face: FaceId, numbers: [usize; 4]) -> [Vec3; 4] {
+    fn face_points_at<const N: usize>(&self, face: FaceId, numbers: [usize; N]) -> [Vec3; N] {
         let polygon = self.faces.polygon(face);
-        let [a, b, c, d] = numbers;
-        let corner = |i: usize| self.points[usize::from(polygon[i].vertex)];
-        [corner(a), corner(b), corner(c), corner(d)]
+        numbers.map(|i| self.points[usize::from(polygon[i].vertex)])
     }
 
     #[inline]

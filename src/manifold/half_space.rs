@@ -139,7 +139,7 @@ fn push_spread(
     let count = shape.face_len(polygon);
     let plane = frame.projection();
     window.set(count, |numbers| {
-        plane.flatten(shape.face_points_x4(polygon, numbers))
+        plane.flatten(shape.face_points_at(polygon, numbers))
     });
     corners.set(window);
     let distances = |row: usize, _, _| {

@@ -60,8 +60,7 @@ fn inset_among(
         // After the last corner, the first ones come again.
         let wrapped = |i: usize| if i < count { i } else { i - count };
         let number = |i: usize| numbered(wrapped(first + i));
-        let [a, b, c, d] = shape.face_points_x4(face, [0, 1, 2, 3].map(number));
-        let next = shape.vertex(shape.face_vertex(face, number(4))).as_vec3();
+        let [a, b, c, d, next] = shape.face_points_at(face, [0, 1, 2, 3, 4].map(number));
         let row = |axis: usize| {
             let from = f32x4::new([a[axis], b[axis], c[axis], d[axis]]);
             let to = f32x4::new([b[axis], c[axis], d[axis], next[axis]]);
