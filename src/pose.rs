@@ -100,8 +100,8 @@ impl RelativePose {
         }
     }
 
-    /// How far no point of shape 2 has moved since an earlier pose, if it is no farther than `lever` from the origin
-    /// of frame 2.
+    /// How far a point of shape 2 has moved since an earlier pose, at most, if it is no farther than `lever` from
+    /// the origin of frame 2.
     #[inline]
     pub(crate) fn way_from(&self, before: &Self, lever: f64) -> f64 {
         let [now, then] = [self.rotation, before.rotation];

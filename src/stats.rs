@@ -217,11 +217,17 @@ thread_local! {
 }
 
 impl SharedStats {
+    /// The counters of this thread.
+    #[inline]
+    fn shard(&self) -> &Shard {
+        &self.0[SHARD.with(|s| *s)]
+    }
+
     /// Adds one answered query.
     #[inline]
     pub fn record(&self, stage: Stage, cost: &Cost) {
-        self.record_free(stage);
-        let shard = &self.0[SHARD.with(|s| *s)];
+        let shard = self.shard();
+        add(&shard.answered[stage as usize], 1);
         add(&shard.iterations, cost.iterations);
         add(&shard.supports, cost.supports);
         add(&shard.climb_moves, cost.climb_moves);
@@ -231,14 +237,13 @@ impl SharedStats {
     /// Adds one answer that cost no query.
     #[inline]
     pub fn record_free(&self, stage: Stage) {
-        let shard = &self.0[SHARD.with(|s| *s)];
-        add(&shard.answered[stage as usize], 1);
+        add(&self.shard().answered[stage as usize], 1);
     }
 
     /// Adds one pair that the fallback gets. What is wrong with the world goes to the log, once.
     #[inline]
     pub fn record_left(&self, why: Left) {
-        add(&self.0[SHARD.with(|s| *s)].left[why as usize], 1);
+        add(&self.shard().left[why as usize], 1);
         if let Some(warning) = why.warning() {
             self.warn_once(why, warning);
         }

@@ -51,8 +51,9 @@ impl NormalCircle {
     }
 }
 
-/// The greatest separation along the normals that suit a ruling, near a normal and the vertex at it: where its slope, which the extreme
-/// vertices show, vanishes. By Newton's method, as long as its steps are small and the extreme point moves smoothly.
+/// The greatest separation along the normals that suit a ruling, near a normal and the vertex at it: where its
+/// slope, which the extreme vertices show, vanishes. By Newton's method, as long as its steps are small and the
+/// extreme point moves smoothly.
 pub(super) fn along_ruling<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     ruling: &Ruling,

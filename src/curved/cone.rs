@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::body::{Body, CircularEdge, Ruling};
-use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall};
+use super::piece::{FlatSide, Generator, Piece, RuledSurface, TangentBall};
+use super::round;
 use crate::primitive::Cone;
 use crate::stats::Cost;
 use crate::support::VertexId;
@@ -19,15 +20,7 @@ fn lean(cone: &Cone) -> [f64; 2] {
 impl Cone {
     /// The base, moved outwards by the width of the border.
     fn base(&self, border: f64) -> FlatSide {
-        let offset = self.half_height() + border;
-        FlatSide {
-            normal: DVec3::NEG_Y,
-            offset,
-            outline: Outline::Disc {
-                center: DVec3::NEG_Y * offset,
-                radius: self.rim_radius(),
-            },
-        }
+        round::end(DVec3::NEG_Y, self.half_height() + border, self.rim_radius())
     }
 
     fn tangent_ball(&self) -> TangentBall {
@@ -48,22 +41,19 @@ impl Body for Cone {
     }
 
     fn inset(&self, _: &FlatSide, p: DVec3) -> f64 {
-        self.rim_radius() - p.x.hypot(p.z)
+        round::inset_of_end(p, self.rim_radius())
     }
 
     fn point_on_side(&self, dir: DVec3, near: DVec3, _: &mut Cost) -> Option<DVec3> {
         let (half_height, radius) = (self.half_height(), self.rim_radius());
-        let (across, from_axis) = (dir.with_y(0.0), near.with_y(0.0));
-        let [squared_sine, squared] = [across, from_axis].map(DVec3::length_squared);
-        if dir.y < 0.0 && squared_sine < SMALL_TURN * SMALL_TURN {
-            let is_on_base = squared <= radius * radius;
-            return is_on_base.then(|| from_axis.with_y(-half_height));
+        if dir.y < 0.0 && round::is_along_axis(dir) {
+            return round::point_on_end(near, -half_height, radius);
         }
         let height = near.y.clamp(-half_height, half_height);
         let around = 0.5 * radius * (1.0 - height / half_height);
         let [sine, _] = lean(self);
         let is_along = (dir.y - sine).abs() < SMALL_TURN;
-        is_along.then(|| (across * (around / squared_sine.sqrt())).with_y(height))
+        is_along.then(|| round::point_on_circle(dir, height, around))
     }
 
     fn ball_at(&self, p: DVec3) -> (DVec3, f64) {

@@ -3,7 +3,8 @@
 use glam::DVec3;
 
 use super::body::{Body, CircularEdge, Ruling};
-use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall};
+use super::piece::{FlatSide, Generator, Piece, RuledSurface, TangentBall};
+use super::round;
 use crate::primitive::Cylinder;
 use crate::stats::Cost;
 use crate::support::VertexId;
@@ -13,15 +14,7 @@ impl Cylinder {
     /// The cap that looks along `dir`, moved outwards by the width of the border.
     fn cap(&self, dir: DVec3, border: f64) -> FlatSide {
         let normal = DVec3::new(0.0, 1_f64.copysign(dir.y), 0.0);
-        let offset = self.half_height() + border;
-        FlatSide {
-            normal,
-            offset,
-            outline: Outline::Disc {
-                center: normal * offset,
-                radius: self.rim_radius(),
-            },
-        }
+        round::end(normal, self.half_height() + border, self.rim_radius())
     }
 
     fn tangent_ball(&self) -> TangentBall {
@@ -38,20 +31,17 @@ impl Body for Cylinder {
     }
 
     fn inset(&self, _: &FlatSide, p: DVec3) -> f64 {
-        self.rim_radius() - p.x.hypot(p.z)
+        round::inset_of_end(p, self.rim_radius())
     }
 
     fn point_on_side(&self, dir: DVec3, near: DVec3, _: &mut Cost) -> Option<DVec3> {
         let (half_height, radius) = (self.half_height(), self.rim_radius());
-        let (across, from_axis) = (dir.with_y(0.0), near.with_y(0.0));
-        let [squared_sine, squared] = [across, from_axis].map(DVec3::length_squared);
-        if squared_sine < SMALL_TURN * SMALL_TURN {
-            let is_on_cap = squared <= radius * radius;
-            return is_on_cap.then(|| from_axis.with_y(half_height.copysign(dir.y)));
+        if round::is_along_axis(dir) {
+            return round::point_on_end(near, half_height.copysign(dir.y), radius);
         }
         let height = near.y.clamp(-half_height, half_height);
         let is_across = dir.y.abs() < SMALL_TURN;
-        is_across.then(|| (across * (radius / squared_sine.sqrt())).with_y(height))
+        is_across.then(|| round::point_on_circle(dir, height, radius))
     }
 
     fn ball_at(&self, p: DVec3) -> (DVec3, f64) {

@@ -29,6 +29,7 @@ mod place;
 mod polytope;
 mod query;
 mod rim_edge;
+mod round;
 mod search;
 mod seeds;
 mod stationary;

@@ -123,20 +123,29 @@ pub(super) fn grow_clusters(points: &[Vec3], faces: &Faces, graph: &EdgeGraph) -
 }
 
 /// The faces beside one of about their direction, the largest first.
-fn seeds(points: &[Vec3], faces: &Faces) -> Vec<u16> {
+fn seeds(points: &[Vec3], faces: &Faces) -> impl Iterator<Item = u16> {
     let seeds = (0..faces.len() as u16).filter(|&face| faces.is_beside_like(face.into()));
+    largest_first(seeds, |face| area(points, faces, face))
+}
+
+/// Items of these sizes, which are not negative, from the largest to the smallest.
+pub(super) fn largest_first<T: Copy + Ord>(
+    items: impl Iterator<Item = T>,
+    size: impl Fn(T) -> f64,
+) -> impl Iterator<Item = T> {
     // The bits of non-negative numbers sort as the numbers do.
-    let with_size = |face: u16| (Reverse(area(points, faces, face).to_bits()), face);
-    let mut seeds: Vec<_> = seeds.map(with_size).collect();
-    seeds.sort_unstable();
-    seeds.into_iter().map(|(_, face)| face).collect()
+    let mut items: Vec<_> = items
+        .map(|item| (Reverse(size(item).to_bits()), item))
+        .collect();
+    items.sort_unstable();
+    items.into_iter().map(|(_, item)| item)
 }
 
 /// Twice the area of a face.
 fn area(points: &[Vec3], faces: &Faces, face: u16) -> f64 {
     let corners = faces.polygon(face.into());
-    let at =
-        |i: usize| points[usize::from(corners[i].vertex)].as_dvec3() - at_first(points, corners);
+    let first = at_first(points, corners);
+    let at = |i: usize| points[usize::from(corners[i].vertex)].as_dvec3() - first;
     let fan = (1..corners.len() - 1).map(|i| at(i).cross(at(i + 1)));
     fan.sum::<DVec3>().length()
 }

@@ -13,7 +13,8 @@ use crate::primitive::{Ball, CuboidPolytope, Segment, TrianglePolytope};
 use crate::query::{Feature, FlushFaces, Found, Full, Proximity, Query, Start, Strategy, Verdict};
 use crate::support::{Cso, CsoVertex, Polytope};
 
-/// A polytope that hulls meet. Its functions are those of the same name with a hull as the first shape.
+/// A polytope that hulls meet. Its functions are those of the same name with a hull as the first shape. (Default
+/// bodies would be generic again.)
 pub(crate) trait HullPartner: Polytope + Sized {
     fn start_from_features(
         query: &mut Query<'_, '_, Hull, Self>,

@@ -93,9 +93,9 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         })
     }
 
-    /// The depth, if a candidate and its inset are known. Faces that lie flush on each other, a polytope of a previous frame, or the adjacent facets may
-    /// prove that it is the candidate's. Otherwise EPA expands a polytope from points near the candidate. If it
-    /// finds the shapes apart, GJK finds the distance.
+    /// The depth, if a candidate and its inset are known. Faces that lie flush on each other, a polytope of a
+    /// previous frame, or the adjacent facets may prove that it is the candidate's. Otherwise EPA expands a polytope
+    /// from points near the candidate. If it finds the shapes apart, GJK finds the distance.
     pub(super) fn find_depth(
         &mut self,
         (candidate, inset): (&Proximity, f64),

@@ -7,7 +7,7 @@
 
 use glam::DVec3;
 
-use super::half_edge::{HalfEdge, HalfEdgeMesh, next};
+use super::half_edge::{HalfEdge, HalfEdgeMesh, next, triangle as triangle_of};
 use crate::tolerance::{BENT_EDGE, FLAT_EDGE, FLAT_SIDE};
 
 /// The triangles of a surface, in an order and with diagonals that depend only on its vertices. `None` if
@@ -94,8 +94,8 @@ impl<'a> Sides<'a> {
         seen[triangle] = true;
         while let Some(t) = stack.pop() {
             count += 1;
-            for h in 3 * t as HalfEdge..3 * t as HalfEdge + 3 {
-                let beside = self.mesh.twin(h) as usize / 3;
+            for h in self.mesh.sides_of(t) {
+                let beside = triangle_of(self.mesh.twin(h));
                 if !is_flat[h as usize] {
                     border.push(h);
                 } else if !std::mem::replace(&mut seen[beside], true) {

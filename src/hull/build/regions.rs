@@ -1,12 +1,11 @@
 //! Regions of a surface, each of which lies in one plane.
 
-use std::cmp::Reverse;
-
 use glam::DVec3;
 
 use super::area_vectors::AreaVectors;
 use super::flat_edges::NearlyFlatEdges;
 use super::half_edge::{HalfEdge, HalfEdgeMesh, next, triangle};
+use crate::hull::clusters::largest_first;
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS};
 
 /// Sets of triangles, each of which lies in one plane.
@@ -50,7 +49,8 @@ impl CoplanarRegions {
             }
         };
         let is_beside = |t: &u32| (3 * t..3 * t + 3).any(|side| flat.contains(side));
-        for seed in largest_first(surface, (0..count as u32).filter(is_beside)) {
+        let area = |t: u32| surface.triangles[t as usize].area;
+        for seed in largest_first((0..count as u32).filter(is_beside), area) {
             if regions.of[seed as usize] != FREE {
                 continue;
             }
@@ -164,18 +164,6 @@ impl CoplanarRegions {
             }
         }
     }
-}
-
-/// Some triangles, the largest first.
-fn largest_first(
-    surface: &AreaVectors,
-    triangles: impl Iterator<Item = u32>,
-) -> impl Iterator<Item = u32> {
-    // The bits of non-negative numbers sort as the numbers do.
-    let with_size = |t: u32| (Reverse(surface.triangles[t as usize].area.to_bits()), t);
-    let mut triangles: Vec<_> = triangles.map(with_size).collect();
-    triangles.sort_unstable();
-    triangles.into_iter().map(|(_, triangle)| triangle)
 }
 
 /// The plane of some triangles: its normal, and the centroid of the triangles.

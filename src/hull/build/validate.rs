@@ -103,14 +103,12 @@ pub(super) fn validate_no_bowl(
 }
 
 /// Refuses a surface that does not go around the centre exactly once: no triangle may face the centre, unless
-/// rounding turned a sliver, and a ray from the centre must leave only once.
+/// rounding turned a sliver, and a ray from the centre must leave only once. Returns whether it leaves exactly
+/// once, and no triangle faces the centre. Then the surface is connected, and no two vertices are at the same place.
 ///
 /// All edges of a fold may be convex, and so may be all edges of two connected layers. Hull builders that
 /// work in f32 leave such surfaces on needles, whose cross-section they mistake for rounding. A climb would
 /// be trapped there, far below the top.
-///
-/// Whether the ray leaves exactly once, and no triangle faces the centre. Then the surface is connected, and no
-/// two vertices are at the same place.
 pub(super) fn validate_single_layer(
     points: &[DVec3],
     triangles: &[[u32; 3]],

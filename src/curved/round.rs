@@ -1,0 +1,41 @@
+//! What cylinders and cones have in common: they are round about the y axis, with discs at their ends.
+
+use glam::DVec3;
+
+use super::piece::{FlatSide, Outline};
+use crate::tuning::SMALL_TURN;
+
+/// The disc at an end, with the outward normal along the axis.
+pub(super) fn end(normal: DVec3, offset: f64, radius: f64) -> FlatSide {
+    FlatSide {
+        normal,
+        offset,
+        outline: Outline::Disc {
+            center: normal * offset,
+            radius,
+        },
+    }
+}
+
+/// How far inside the rim of an end a point of its plane is.
+pub(super) fn inset_of_end(p: DVec3, radius: f64) -> f64 {
+    radius - p.x.hypot(p.z)
+}
+
+/// Whether a unit vector is about along the axis.
+pub(super) fn is_along_axis(dir: DVec3) -> bool {
+    dir.with_y(0.0).length_squared() < SMALL_TURN * SMALL_TURN
+}
+
+/// The point of the end at a height that is beside another point along the axis, if there is one.
+pub(super) fn point_on_end(near: DVec3, height: f64, radius: f64) -> Option<DVec3> {
+    let from_axis = near.with_y(0.0);
+    let is_on_it = from_axis.length_squared() <= radius * radius;
+    is_on_it.then(|| from_axis.with_y(height))
+}
+
+/// The point of a circle around the axis that is extreme along `dir`.
+pub(super) fn point_on_circle(dir: DVec3, height: f64, radius: f64) -> DVec3 {
+    let across = dir.with_y(0.0);
+    (across * (radius / across.length_squared().sqrt())).with_y(height)
+}
