@@ -1,4 +1,4 @@
-//! What contacts need to know of a convex shape beside its support mapping.
+//! Convex shapes made of pieces of surface: what contacts need besides the support mapping.
 
 use glam::DVec3;
 
@@ -6,8 +6,9 @@ use super::piece::{FlatSide, Piece};
 use crate::stats::Cost;
 use crate::support::{Support, VertexId};
 
-/// What a part of a surface demands of its outward unit normal: `axis · normal = sine`. An edge has normals
-/// square to it; the side of a cylinder or a cone has normals with one angle to the axis.
+/// The condition that a part of a surface sets for its outward unit normals: `axis · normal = sine`. The
+/// normals of an edge are perpendicular to it. Those of the side of a cylinder or a cone have a fixed angle
+/// to the axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Ruling {
     /// A unit vector.
@@ -27,32 +28,34 @@ pub struct CircularEdge {
     pub radius: f64,
 }
 
-/// A convex shape with pieces of surface. Everything is in its own frame.
+/// A convex shape whose surface consists of pieces. Everything is in its own frame.
 pub trait Body: Support {
-    /// The flat side at `vertex`, extreme along `dir`, that looks most along `dir`.
+    /// The flat side at `vertex` whose normal is nearest to `dir`. `vertex` is extreme along `dir`.
     fn flat(&self, dir: DVec3, vertex: VertexId) -> Option<FlatSide>;
 
-    /// How far inside a flat side a point of its plane is; not more than zero outside.
+    /// The distance of a point in the plane of a flat side from its outline. Zero or negative outside.
     fn inset(&self, flat: &FlatSide, p: DVec3) -> f64;
 
-    /// A point of the flat or ruled side that looks about along `dir`, near another point.
+    /// A point near `near` on the flat or ruled side whose normal is about `dir`.
     fn point_on_side(&self, dir: DVec3, near: DVec3, cost: &mut Cost) -> Option<DVec3>;
 
-    /// The centre and the radius of a ball inside that touches the surface at a point of a ruled side; the point
-    /// itself on others.
+    /// The centre and radius of a ball inside the shape that touches the surface at `p`, a point of a ruled
+    /// side. On other pieces, `p` itself with radius zero.
     fn ball_at(&self, p: DVec3) -> (DVec3, f64);
 
-    /// The edges at `vertex`, extreme along `dir`, and the ruled sides.
+    /// The edges at `vertex`, which is extreme along `dir`, and the ruled sides.
     fn rulings(&self, dir: DVec3, vertex: VertexId) -> impl Iterator<Item = Ruling>;
 
-    /// The straight edge at `vertex`, extreme along `dir`, that is most across that, if there is one.
+    /// The straight edge at `vertex` that is most nearly perpendicular to `dir`, if there is one. `vertex` is
+    /// extreme along `dir`.
     fn edge(&self, dir: DVec3, vertex: VertexId) -> Option<[DVec3; 2]>;
 
-    /// The rim on which the point is that is extreme along `dir`, if it is on one.
+    /// The rim on which the extreme point along `dir` lies, if it lies on one.
     fn rim(&self, dir: DVec3) -> Option<CircularEdge>;
 
-    /// The piece at `vertex`, extreme along `dir`, that looks most along `dir`. `border` is the width of the
-    /// rounded border, by which the piece is moved outwards. The corners of a polygon go to `corners`.
+    /// The piece at `vertex` whose normal is nearest to `dir`. `vertex` is extreme along `dir`. The piece is
+    /// moved outwards by `border`, the width of the rounded border. If it is a polygon, its corners are added
+    /// to `corners`.
     fn piece(
         &self,
         dir: DVec3,

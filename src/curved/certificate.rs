@@ -1,4 +1,4 @@
-//! What proves a signed distance: the support planes along its normal from below, the patch from above.
+//! Proofs of a signed distance: the support planes along its normal bound it from below, the patch from above.
 
 use glam::DVec3;
 
@@ -11,12 +11,13 @@ use crate::support::Cso;
 use crate::tolerance::SAME_NORMAL;
 
 impl Patch {
-    /// The place with the narrowest gap, if the cores' signed distance is no more than `separation`, which their
-    /// support planes along the normal show, up to `tolerance`.
+    /// The place with the narrowest gap, if it proves that the signed distance of the cores is at most
+    /// `separation`, up to `tolerance`. `separation` is the distance of their support planes along the
+    /// normal.
     ///
-    /// Two points of cores that are apart bound their distance. A depth is bounded by a ball in the
-    /// difference: under a disc that is in it, or the sum of balls inside both cores that touch their
-    /// surfaces in a place of contact.
+    /// If the cores are apart, two of their points bound the distance. If they overlap, a ball inside the
+    /// difference bounds the depth: it lies under a disc in the difference, or it is the sum of balls inside
+    /// both cores that touch their surfaces at a place of contact.
     pub(super) fn proved<A: Body, B: Body>(
         &self,
         cso: &Cso<'_, A, B>,
@@ -66,7 +67,7 @@ impl Patch {
         }))
     }
 
-    /// The mean of all places as near as this, on both surfaces.
+    /// The mean of all places with at most this distance, on both surfaces.
     fn middle(&self, distance: f64) -> [DVec3; 2] {
         let near = self
             .places
@@ -80,7 +81,7 @@ impl Patch {
         sum.map(|sum| sum / count)
     }
 
-    /// The points of the cores that the borders are around.
+    /// The points of the cores from which the borders reach the place.
     fn core_points(&self, place: &ContactPlace) -> [DVec3; 2] {
         let points = [place.on_1, place.on_2];
         [0, 1].map(|side| {
@@ -94,7 +95,7 @@ impl Patch {
         })
     }
 
-    /// The radius of a ball inside of a core that touches the surface at a point of a line.
+    /// The radius of a ball inside a core that touches the surface at a point of a line.
     fn ball(&self, side: usize, at: DVec3) -> f64 {
         let Piece::Line(Generator {
             ends,
@@ -112,7 +113,7 @@ impl Patch {
         ball.radius(share.clamp(0.0, 1.0))
     }
 
-    /// The radius of a disc across the normal around a point of a flat side.
+    /// The radius of a disc around a point of a flat side that is perpendicular to the normal.
     fn disc(&self, side: usize, at: DVec3) -> f64 {
         let Some(flat @ Flat { side: face, .. }) = self.flat(side) else {
             return 0.0;

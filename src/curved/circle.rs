@@ -1,4 +1,5 @@
-//! The normal that suits an edge or a ruled side, and separates most: a search on the circle of all that suit it.
+//! The normal with the greatest separation that satisfies a ruling: a search on the circle of all normals
+//! that do.
 
 use glam::DVec3;
 
@@ -11,7 +12,7 @@ use crate::support::{Cso, CsoVertex};
 use crate::tolerance::SETTLED_ANGLE;
 use crate::tuning::LONGEST_STEP;
 
-/// The circle of unit vectors with one sine to an axis.
+/// The circle of the unit vectors that satisfy a ruling.
 #[derive(Clone, Copy)]
 struct NormalCircle {
     center: DVec3,
@@ -20,7 +21,7 @@ struct NormalCircle {
 }
 
 impl NormalCircle {
-    /// The first one is nearest to `about`.
+    /// The circle starts at the normal nearest to `about`.
     fn new(ruling: &Ruling, about: DVec3) -> Self {
         let beside = across(about, ruling.axis);
         let across = beside.unwrap_or_else(|| ruling.axis.any_orthonormal_vector());
@@ -33,7 +34,7 @@ impl NormalCircle {
         }
     }
 
-    /// The circle with another first one, turned by nearly an angle that is small.
+    /// The same circle, with its start turned by a small angle (up to third order).
     fn turned(&self, angle: f64) -> Self {
         let tangent = 0.5 * angle;
         let scale = 1.0 / (1.0 + tangent * tangent);
@@ -45,15 +46,15 @@ impl NormalCircle {
         }
     }
 
-    /// The first normal.
+    /// The normal at the start.
     fn normal(&self) -> DVec3 {
         self.center + self.u
     }
 }
 
-/// The greatest separation along the normals that suit a ruling, near a normal and the vertex at it: where its
-/// slope, which the extreme vertices show, vanishes. By Newton's method, as long as its steps are small and the
-/// extreme point moves smoothly.
+/// The greatest separation along normals that satisfy a ruling, close to the normal `about` and its extreme
+/// vertex `near`. The extreme vertex gives the slope of the separation, and Newton's method finds where it
+/// vanishes. `None` if a step is too long or the extreme point does not move smoothly.
 pub(super) fn along_ruling<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     ruling: &Ruling,

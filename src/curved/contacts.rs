@@ -1,4 +1,4 @@
-//! Which places of a patch become contacts.
+//! The choice of the places of a patch that become contacts.
 
 use glam::{DVec2, DVec3};
 
@@ -11,10 +11,10 @@ use crate::support::FaceId;
 use crate::tolerance::SAME_GAP;
 use crate::tuning::SAME_POINT;
 
-/// Up to four contacts of a patch, the deepest first: those nearer than `max_distance`, spread out, then the
-/// nearest of the others. `on_1` is the point of shape 1 where a query found the shapes `least` apart, with
-/// their borders; it becomes a contact if the patch has none as deep. `scale` is the radius of the smaller
-/// shape.
+/// Up to four contacts of a patch. The deepest place comes first, then places within `max_distance` that are
+/// spread out, then the nearest of the others. A query found that the shapes, with their borders, are `least`
+/// apart at `on_1` on shape 1. This point becomes the first contact if the patch has no place as deep.
+/// `scale` is the radius of the smaller shape.
 pub fn contacts(
     patch: &Patch,
     pose: &RelativePose,
@@ -41,7 +41,7 @@ pub fn contacts(
     chosen.contacts(pose, least)
 }
 
-/// Places in the contact plane, seen from one of them.
+/// Places in the contact plane, relative to one of them.
 struct Field<'a> {
     places: &'a [ContactPlace],
     max_distance: f64,
@@ -55,7 +55,7 @@ impl<'a> Field<'a> {
         DVec2::from(self.axes.map(|axis| way.dot(axis)))
     }
 
-    /// That within reach with the greatest measure above `least`.
+    /// The place within reach with the greatest measure, if that is above `least`.
     fn farthest(&self, least: f64, measure: impl Fn(DVec2) -> f64) -> Option<&'a ContactPlace> {
         let mut best = (least, None);
         for place in self.places {
@@ -68,7 +68,7 @@ impl<'a> Field<'a> {
     }
 }
 
-/// Twice the area that a point adds to the triangle of the origin, `a` and `b`, beyond one of its edges at `b`.
+/// Twice the area by which `p` extends the triangle of the origin, `a` and `b`, beyond one of the edges at `b`.
 fn added_area(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     let turn = a.perp_dot(b).signum();
     let beyond_ab = (p - a).perp_dot(b - a) * turn;
@@ -99,8 +99,8 @@ impl Chosen {
         !self.places.iter().flatten().any(is_there)
     }
 
-    /// Those that span a large area with the first one: the farthest from it, and the farthest on both sides
-    /// of the line through both, or beyond the triangle.
+    /// Adds places that span a large area with the first one: the farthest from it, and the farthest from the
+    /// line through both, on either side. If one side is empty, the place that extends the triangle most.
     fn spread(&mut self, places: &[ContactPlace], max_distance: f64) {
         let Some(first) = self.places[0] else { return };
         let u = self.normal.any_orthonormal_vector();
@@ -128,7 +128,7 @@ impl Chosen {
         }
     }
 
-    /// The nearest of those that are left, while there is room.
+    /// Adds the nearest of the remaining places while there is room.
     fn fill(&mut self, places: &[ContactPlace]) {
         while self.count < MAX_POINTS {
             let left = places.iter().filter(|place| self.is_new(place));

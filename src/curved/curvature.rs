@@ -1,4 +1,4 @@
-//! How the extreme point of a difference moves while the normal turns: along the tangents of rims.
+//! How the extreme point of the difference moves as the normal turns: along the tangents of rims.
 
 use glam::DVec3;
 
@@ -7,12 +7,12 @@ use super::stationary::NormalSeparation;
 use crate::support::Cso;
 use crate::tolerance::SAME_NORMAL;
 
-/// The derivative of the extreme point by the unit normal: for each rim its tangent, and how far the point moves
-/// along it. The sum of the squares of vectors with these weights.
+/// The derivative of the extreme point with respect to the unit normal, a symmetric matrix: the weighted sum
+/// of `tangent ⊗ tangent` over the rims.
 pub(super) struct Curvature([(DVec3, f64); 2]);
 
 impl Curvature {
-    /// `None` where a flat side is square to the normal.
+    /// `None` if a flat side is perpendicular to the normal.
     pub fn of<A: Body, B: Body>(cso: &Cso<'_, A, B>, at: &NormalSeparation) -> Option<Self> {
         let outward_2 = -cso.pose.direction_to_2(at.normal);
         let of_first = bend(cso.shape_1.rim(at.normal), at.normal)?;
@@ -20,7 +20,7 @@ impl Curvature {
         Some(Self([of_first, (cso.pose.direction_to_1(tangent), weight)]))
     }
 
-    /// How far the point moves along `b` while the normal turns along `a`.
+    /// The rate at which the point moves along `b` as the normal turns along `a`.
     pub fn between(&self, a: DVec3, b: DVec3) -> f64 {
         let [first, second] = self
             .0
@@ -30,7 +30,7 @@ impl Curvature {
     }
 }
 
-/// A tangent of a rim at its extreme point, of any length, and its weight.
+/// The tangent of a rim at its extreme point, not normalised, and its weight.
 fn bend(rim: Option<CircularEdge>, normal: DVec3) -> Option<(DVec3, f64)> {
     let Some(rim) = rim else {
         return Some((DVec3::ZERO, 0.0));

@@ -11,7 +11,7 @@ use crate::support::VertexId;
 use crate::tuning::SMALL_TURN;
 
 impl Cylinder {
-    /// The cap that looks along `dir`, moved outwards by the width of the border.
+    /// The cap on the side of `dir`, moved outwards by the width of the border.
     fn cap(&self, dir: DVec3, border: f64) -> FlatSide {
         let normal = DVec3::new(0.0, 1_f64.copysign(dir.y), 0.0);
         round::end(normal, self.half_height() + border, self.rim_radius())

@@ -1,4 +1,4 @@
-//! Discs on polygons and on discs.
+//! Contacts of discs with polygons and with each other.
 
 use glam::DVec3;
 
@@ -25,8 +25,8 @@ const SECTORS: [[f64; 2]; 8] = {
 };
 
 impl Patch {
-    /// The direction in the plane of a flat side in which its contacts are deepest, and how much it
-    /// leans over the other one.
+    /// The direction in the plane of a flat side in which its contacts become deeper. `None` if both sides
+    /// are parallel.
     fn lean(&self, side: usize, flat: &FlatSide) -> Option<DVec3> {
         let Piece::Flat(other) = &self.pieces[1 - side] else {
             return None;
@@ -37,8 +37,9 @@ impl Patch {
         (in_plane.length() > LEVEL).then(|| in_plane.normalize())
     }
 
-    /// A disc on a polygon: the corners of a square in it, or what of it is over the polygon. The square
-    /// lies still in the frame of the polygon, unless the disc leans: then a corner is the deepest point.
+    /// A disc on a polygon: the corners of a square in the disc, or those of the part over the polygon. The
+    /// square is fixed in the frame of the polygon, unless the disc is tilted: then one corner is the deepest
+    /// point.
     pub(super) fn add_disc(
         &mut self,
         side: usize,
@@ -84,8 +85,8 @@ impl Patch {
         self.add_polygon_over_disc(1 - side, center, radius);
     }
 
-    /// Whether a whole disc is over a flat side: seen along the normal its radius does not grow by more than
-    /// both sides lean.
+    /// Whether a whole disc is over a flat side. The tilts of both sides bound how much its radius grows,
+    /// seen along the normal.
     fn is_whole_over(&self, side: usize, center: DVec3, radius: f64) -> bool {
         self.flat(side).is_some_and(|flat| {
             let lean = flat.side.normal.dot(self.normal()).abs();
@@ -94,7 +95,7 @@ impl Patch {
         })
     }
 
-    /// The corners of a polygon over a disc, and where its sides cross the circle.
+    /// The corners of a polygon over a disc, and the points where its edges cross the circle.
     fn add_polygon_over_disc(&mut self, side: usize, center: DVec3, radius: f64) {
         let count = self.corners[side].len();
         for i in 0..count {
@@ -119,7 +120,8 @@ impl Patch {
         }
     }
 
-    /// Two discs: a square in the smaller one if that is inside of the other, or the ends of the lens.
+    /// Two discs: a square in the smaller one if it is within the other, or the ends of the lens in which
+    /// they overlap.
     pub(super) fn add_two_discs(&mut self, flats: [&FlatSide; 2], circles: [(DVec3, f64); 2]) {
         let [(c1, r1), (c2, r2)] = circles;
         let smaller = usize::from(r2 < r1);
@@ -131,7 +133,7 @@ impl Patch {
             self.add_disc(smaller, flats[smaller], circles[smaller], false);
             return;
         }
-        // The circle inside of the lens.
+        // The circle within the lens.
         let inner = 0.5 * (r1 + r2 - distance);
         if inner >= (1.0 - SMALL_SHIFT) * least {
             let way = across / distance;
@@ -140,7 +142,7 @@ impl Patch {
         } else if inner > 0.0 {
             self.add_lens(flats, circles, across / distance, distance);
         }
-        // Where the discs lean, the deepest point may be on either rim.
+        // If the discs are tilted, the deepest point may be on either rim.
         for side in 0..2 {
             if let Some(down) = self.lean(side, flats[side]) {
                 let (center, radius) = circles[side];
@@ -151,7 +153,7 @@ impl Patch {
         }
     }
 
-    /// The two points where circles cross, and the middles of the arcs between these.
+    /// The two points where the circles cross, and the middles of the arcs between them.
     fn add_lens(
         &mut self,
         flats: [&FlatSide; 2],
@@ -164,7 +166,7 @@ impl Patch {
         let along = 0.5 * (distance + (r1 * r1 - r2 * r2) / distance);
         let half_chord = (r1 * r1 - along * along).max(0.0).sqrt();
         let beside = flats[0].normal.cross(u1);
-        // A hair inside, so that rounding does not put them outside of either disc.
+        // Slightly inside, so that rounding does not put them outside of either disc.
         let hair = 1.0 - ON_OUTLINE;
         for (number, sign) in [-1.0, 1.0].into_iter().enumerate() {
             let at = c1 + (u1 * along + beside * (sign * half_chord)) * hair;
@@ -187,8 +189,8 @@ impl Patch {
         );
     }
 
-    /// A place at the crossing of two circles, in the plane of the first one. Seen along a normal that leans,
-    /// the second circle is a little narrower.
+    /// A place where two circles cross, in the plane of the first one. Seen along a tilted normal, the second
+    /// circle is slightly narrower.
     fn push_near_rim(&mut self, at: DVec3, spots: [Spot; 2]) {
         let Some(second) = self.flat(1) else { return };
         let Outline::Disc { center, radius } = second.side.outline else {

@@ -1,4 +1,4 @@
-//! Lines of ruled surfaces on flat sides and on each other.
+//! Contacts of lines of ruled surfaces with flat sides and with each other.
 
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use crate::tolerance::ON_OUTLINE;
 use crate::tuning::{SHORT_LINE, SIDE_BY_SIDE_SINE};
 
 impl Patch {
-    /// The ends of what of a line is over a flat side.
+    /// The ends of the part of a line that is over a flat side.
     pub(super) fn add_line(&mut self, side: usize, line: &Generator) {
         let Some(flat) = self.flat(1 - side) else {
             return;
@@ -37,7 +37,7 @@ impl Patch {
         let sine = beside.dot(other);
         let offset = lines[1].ends[0] - lines[0].ends[0];
         if sine.abs() > ON_OUTLINE {
-            // Solved for the shares of both ways.
+            // Solve for the crossing, as a fraction of either line.
             let t = -beside.dot(offset) / beside.dot(v);
             let s = along.dot(offset + v * t) / u.length();
             if (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) {
@@ -67,7 +67,7 @@ impl Patch {
         }
         let middle = 0.5 * (low + high);
         for (number, end) in [low, high].into_iter().enumerate() {
-            // Along a normal that leans the line through a place leaves a surface farther on.
+            // If the normal is tilted, the surface point over a place is farther along the line than the place.
             let mut at = end;
             for _ in 0..3 {
                 let Some(found) = self.across_lines(lines, [along, beside], at) else {
@@ -84,7 +84,8 @@ impl Patch {
         }
     }
 
-    /// A place between two lines at a height along them, and how far along the normal both surfaces are.
+    /// A place between two lines at a coordinate along them, and the heights of both surfaces above it along
+    /// the normal.
     fn across_lines(
         &self,
         lines: [&Generator; 2],
@@ -101,14 +102,14 @@ impl Patch {
         ];
         let total = local[0] + local[1];
         let share = if total > 0.0 { local[0] / total } else { 0.5 };
-        // Between the axes in proportion to the radii the surfaces are nearest.
+        // The surfaces are nearest where the way between the axes is divided in proportion to the radii.
         let place = p1 + beside * (beside.dot(p2 - p1) * share);
         let out = lines[0].exit(place, self.normal())?;
         let back = lines[1].exit(place, -self.normal())?;
         Some((place, [out, -back]))
     }
 
-    /// By how much the points of a place are beyond the ends of their lines, on the side `towards`.
+    /// How far the points of a place are beyond the ends of their lines, on the side `towards`.
     fn beyond_ends(
         &self,
         lines: [&Generator; 2],

@@ -1,13 +1,13 @@
 //! Pairs with a cylinder or a cone: how far they are apart or how deep they overlap, and the contact patch.
 //!
-//! A curved surface has no vertices that a search could end at. But where two shapes are nearest or
-//! overlap least, the normal mostly solves a few equations: it is that of a flat side, it is square to
-//! an edge, or it has a fixed angle to an axis ([`stationary`]). One such normal and the patch along it
-//! prove each other: the normal's support planes bound the signed distance from below, and the narrowest gap
-//! of the patch bounds it from above ([`certificate`]). GJK and EPA only find the way to it, and answer
-//! where no such normal is found ([`search`]).
+//! A search over a curved surface has no vertices to end at. But where two shapes are nearest or overlap
+//! least, the normal usually solves a few equations: it is the normal of a flat side, it is perpendicular to
+//! an edge, or it has a fixed angle to an axis ([`stationary`]). Such a normal and the patch along it make a
+//! proof: the support planes bound the signed distance from below, and the narrowest gap of the patch bounds
+//! it from above ([`certificate`]). GJK and EPA find a normal to start from, and give the answer if none of
+//! these normals can be proved ([`search`]).
 //!
-//! A new convex shape needs a [`Body`]: its support mapping, and the pieces that its surface consists of.
+//! To add a convex shape, implement [`Body`]: its support mapping and the pieces of its surface.
 
 mod at_rest;
 mod body;

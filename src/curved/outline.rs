@@ -1,4 +1,4 @@
-//! Flat sides seen along the contact normal: what is over them, and where lines cross their outlines.
+//! Flat sides seen along the contact normal: whether points are over them, and where lines cross their outlines.
 
 use glam::DVec3;
 
@@ -16,12 +16,12 @@ pub(super) struct Flat<'a> {
 }
 
 impl Flat<'_> {
-    /// How far along the contact normal the plane is from a point.
+    /// The distance along the contact normal from a point to the plane.
     pub fn height(&self, p: DVec3) -> f64 {
         (self.side.offset - self.side.normal.dot(p)) / self.side.normal.dot(self.along)
     }
 
-    /// A point moved into the plane along the contact normal.
+    /// The projection of a point into the plane along the contact normal.
     pub fn project(&self, p: DVec3) -> DVec3 {
         p + self.along * self.height(p)
     }
@@ -31,8 +31,8 @@ impl Flat<'_> {
         self.inset(p).is_some_and(|inset| inset >= 0.0)
     }
 
-    /// How far a point, moved into the plane, is inside of the outline; slightly more than none where
-    /// rounding may have moved it out. `None` outside.
+    /// The distance from the outline of a point that is projected into the plane. It is enlarged by what
+    /// rounding may have taken. `None` outside.
     pub fn inset(&self, p: DVec3) -> Option<f64> {
         let p = self.project(p);
         let inset = match self.side.outline {
@@ -49,7 +49,7 @@ impl Flat<'_> {
         (inset >= 0.0).then_some(inset)
     }
 
-    /// A corner and the inward unit vector of each side, and its length.
+    /// The first corner, the inward unit vector and the length of each edge.
     fn sides(&self) -> impl Iterator<Item = ([DVec3; 2], f64)> {
         let count = self.corners.len();
         (0..count).filter_map(move |i| {
@@ -60,7 +60,8 @@ impl Flat<'_> {
         })
     }
 
-    /// The shares of the way from `a` to `b`, moved into the plane, between which it is inside.
+    /// The part of the segment from `a` to `b` that is inside, projected into the plane: from one fraction of
+    /// it to another.
     pub fn clip(&self, [a, b]: [DVec3; 2]) -> Option<[f64; 2]> {
         let [a, b] = [a, b].map(|p| self.project(p));
         let along = b - a;
@@ -89,7 +90,7 @@ impl Flat<'_> {
     }
 }
 
-/// The shares of `along`, from a point that is seen from the centre, at which a circle is crossed.
+/// The fractions of `along` at which a line crosses a circle. `from` is where it starts, relative to the centre.
 pub(super) fn circle_crossings(from: DVec3, along: DVec3, radius: f64) -> Option<[f64; 2]> {
     let (a, b) = (along.length_squared(), from.dot(along));
     let c = from.length_squared() - radius * radius;

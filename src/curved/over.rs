@@ -1,4 +1,4 @@
-//! Points that are over both pieces of a patch.
+//! Points over both pieces of a patch.
 
 use glam::DVec3;
 
@@ -8,7 +8,7 @@ use super::place::Spot;
 use crate::tolerance::ON_OUTLINE;
 
 impl Patch {
-    /// Extreme points of the cores, moved along the normal, if they are over the other piece.
+    /// Adds the extreme points of the cores, moved along the normal, if they are over the other piece.
     pub(super) fn add_extremes(&mut self) {
         let extreme = self.extreme;
         let cores = [extreme.on_1, extreme.on_2()];
@@ -25,7 +25,7 @@ impl Patch {
         }
     }
 
-    /// How far along the normal a piece is from a point, if it is over the piece.
+    /// The distance along the normal from a point to a piece, if the point is over the piece.
     pub(super) fn height_over(&self, side: usize, p: DVec3) -> Option<f64> {
         match &self.pieces[side] {
             Piece::Flat(_) => {
@@ -61,7 +61,7 @@ impl Patch {
         }
     }
 
-    /// A candidate on a piece, if it is over the other one.
+    /// Adds a point of one piece, if it is over the other one.
     pub(super) fn push_over(&mut self, side: usize, candidate: PiecePoint) {
         if let Some(height) = self.height_over(1 - side, candidate.at) {
             self.push(candidate, by_side(side, [0.0, height]));

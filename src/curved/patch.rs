@@ -1,4 +1,4 @@
-//! The contact patch: where two pieces of surface are over each other along a normal.
+//! The contact patch: where two pieces of surface overlap, seen along a normal.
 
 use std::ops::RangeInclusive;
 
@@ -14,7 +14,7 @@ use crate::tolerance::SAME_GAP;
 
 pub use super::place::ContactPlace;
 
-/// The pieces of both surfaces along a normal, and places over both. In frame 1.
+/// The pieces of both surfaces along a normal, and the places where both meet. In frame 1.
 #[derive(Clone, Debug)]
 pub struct Patch {
     pub(super) pieces: [Piece; 2],
@@ -22,26 +22,26 @@ pub struct Patch {
     pub(super) places: Vec<ContactPlace>,
     normal: DVec3,
     border_radii: [f64; 2],
-    /// Fixed directions in the planes of flat sides, each in its own shape's frame.
+    /// Directions in the planes of flat sides that are fixed in the frames of their shapes.
     references: [DVec3; 2],
-    /// A length that rounding is relative to.
+    /// The length to which rounding errors are relative.
     size: f64,
     pub(super) extreme: CsoVertex,
     found: Found,
-    /// How many places come from contacts of the frame before, and serve for proofs only.
+    /// The number of places that come from the previous contacts. They only serve as proofs.
     guesses: usize,
 }
 
-/// How much of a patch was found.
+/// How much of a patch is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Found {
     /// Only its normal is known.
     Normal,
-    /// The points that are extreme along that.
+    /// And the extreme points along it.
     Extreme,
-    /// The pieces without borders.
+    /// And the pieces without borders.
     Pieces,
-    /// The extreme points that are over both pieces as well.
+    /// And the extreme points that are over both pieces.
     Extremes,
     /// All places.
     All,
@@ -64,14 +64,14 @@ impl Default for Patch {
     }
 }
 
-/// A point of one of the two pieces, and what it is of both.
+/// A point of one of the two pieces, and its spot on both.
 #[derive(Clone, Copy)]
 pub(super) struct PiecePoint {
     pub at: DVec3,
     pub spots: [Spot; 2],
 }
 
-/// Two values in the order of the shapes. The first one is that of `side`.
+/// Puts two values in the order of the shapes. The first one belongs to the shape `side`.
 pub(super) fn by_side<T>(side: usize, [mine, other]: [T; 2]) -> [T; 2] {
     if side == 0 {
         [mine, other]
@@ -81,7 +81,7 @@ pub(super) fn by_side<T>(side: usize, [mine, other]: [T; 2]) -> [T; 2] {
 }
 
 impl Patch {
-    /// Drops the last patch for that along `normal`, along which `extreme` is extreme.
+    /// Starts a new patch along `normal`, with `extreme` as its extreme vertex.
     pub(super) fn aim(&mut self, normal: DVec3, extreme: &CsoVertex) {
         self.places.clear();
         self.normal = normal;
@@ -90,7 +90,7 @@ impl Patch {
         self.guesses = 0;
     }
 
-    /// Drops the last patch for that along `normal`, of which nothing else is known.
+    /// Starts a new patch along `normal`, with nothing else known.
     pub(super) fn aim_along(&mut self, normal: DVec3) {
         self.normal = normal;
         self.found = Found::Normal;
@@ -102,7 +102,7 @@ impl Patch {
         self.found = Found::Pieces;
     }
 
-    /// Adds a place at a point of the first shape, for proofs only, if it is over both pieces.
+    /// Adds a point of the first shape as a place for proofs only, if it is over both pieces.
     pub(super) fn add_guess(&mut self, at: DVec3) {
         if let (Some(first), Some(second)) = (self.height_over(0, at), self.height_over(1, at)) {
             let spots = [Spot::Inside; 2];
@@ -111,7 +111,7 @@ impl Patch {
         self.guesses = self.places.len();
     }
 
-    /// Adds the extreme points that are over both pieces: these are enough for most proofs.
+    /// Adds the extreme points that are over both pieces. They suffice for most proofs.
     pub(super) fn find_extremes(&mut self) {
         self.add_extremes();
         self.found = Found::Extremes;
@@ -128,8 +128,9 @@ impl Patch {
         self.complete(cso, border_radii);
     }
 
-    /// Finds all places along the normal of the last answer, if they are not known. Of rounded shapes it is the
-    /// cores' place that is deepest, moved along the normal; the others lie on pieces that are moved along their own.
+    /// Finds all places along the normal of the last answer, unless they are known. The deepest place of
+    /// rounded shapes is that of their cores, moved along the contact normal. The other places lie on pieces
+    /// that are moved along their own normals.
     pub fn complete<A: Body, B: Body>(&mut self, cso: &Cso<'_, A, B>, border_radii: [f64; 2]) {
         if self.found == Found::All {
             return;
@@ -204,14 +205,14 @@ impl Patch {
         self.size = cso.size() + cso.center().length();
     }
 
-    /// The same as [`add_common`](Self::add_common), before the places that are known.
+    /// [`add_common`](Self::add_common), with the new places before those already known.
     fn add_common_first(&mut self) {
         let extremes = self.places.len();
         self.add_common();
         self.places.rotate_left(extremes);
     }
 
-    /// Drops the places that are not within these distances.
+    /// Drops the places whose distance is not in `range`.
     pub fn retain(&mut self, range: RangeInclusive<f64>) {
         self.places.retain(|place| range.contains(&place.distance));
     }
@@ -221,12 +222,12 @@ impl Patch {
         self.deepest().map(|place| (place.on_1, place.distance))
     }
 
-    /// A direction in the plane of a flat side that lies still in the frame of its shape.
+    /// A direction in the plane of a flat side that is fixed in the frame of its shape.
     pub(super) fn reference(&self, side: usize) -> DVec3 {
         self.references[side]
     }
 
-    /// A length that rounding is relative to.
+    /// The length to which rounding errors are relative.
     pub(super) fn size(&self) -> f64 {
         self.size
     }
@@ -235,7 +236,7 @@ impl Patch {
         self.normal
     }
 
-    /// The direction along the normal out of a shape.
+    /// The direction of the normal that points out of the shape `side`.
     pub(super) fn outward(&self, side: usize) -> DVec3 {
         if side == 0 { self.normal } else { -self.normal }
     }
@@ -244,12 +245,12 @@ impl Patch {
         self.border_radii[side]
     }
 
-    /// How far along the normal the borders are from extreme points of the cores.
+    /// The heights of the borders above the extreme points of the cores, along the normal.
     pub(super) fn border_heights(&self) -> [f64; 2] {
         [self.border_radii[0], -self.border_radii[1]]
     }
 
-    /// The widths of both borders.
+    /// The sum of the widths of both borders.
     pub(super) fn borders(&self) -> f64 {
         self.border_radii[0] + self.border_radii[1]
     }
@@ -265,7 +266,7 @@ impl Patch {
         }
     }
 
-    /// Where the pieces are over each other as a whole.
+    /// Adds the places where whole pieces overlap.
     fn add_common(&mut self) {
         match self.pieces {
             [Piece::Flat(a), Piece::Flat(b)] => {

@@ -1,4 +1,4 @@
-//! Pieces of surface: flat sides, lines of ruled surfaces, points.
+//! Pieces of a surface: flat sides, lines of ruled surfaces, and points.
 
 use glam::DVec3;
 
@@ -24,7 +24,7 @@ pub struct FlatSide {
     pub normal: DVec3,
     /// `normal · p` of its points.
     pub offset: f64,
-    /// What bounds it.
+    /// The boundary of the side.
     pub outline: Outline,
 }
 
@@ -38,7 +38,7 @@ pub enum Outline {
         /// Its radius.
         radius: f64,
     },
-    /// A face, whose corners are kept beside the piece.
+    /// A face. Its corners are stored beside the piece.
     Polygon(FaceId),
 }
 
@@ -49,21 +49,22 @@ pub struct Generator {
     pub ends: [DVec3; 2],
     /// The surface that it is on.
     pub surface: RuledSurface,
-    /// How large balls inside the core are that touch it there.
+    /// The balls inside the core that touch it along this line.
     pub ball: TangentBall,
 }
 
-/// How the radius of the largest ball inside of a core that touches a line of its surface varies along it.
+/// The radius of the largest ball inside a core that touches a line of its surface, as a function of the
+/// place along that line.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TangentBall {
-    /// How it would grow from either end to the other.
+    /// The growth of the radius over the whole line, from either end.
     pub growth: [f64; 2],
-    /// It is no more.
+    /// An upper bound of the radius.
     pub most: f64,
 }
 
 impl TangentBall {
-    /// The radius at a share of the way from the first end to the second.
+    /// The radius at a fraction `share` of the way from the first end to the second.
     pub fn radius(&self, share: f64) -> f64 {
         let [from_first, from_second] = self.growth;
         (from_first * share)
@@ -81,12 +82,12 @@ pub struct RuledSurface {
     pub axis: DVec3,
     /// The radius at the origin.
     pub radius: f64,
-    /// How much the radius grows along the axis.
+    /// The growth of the radius per unit length along the axis.
     pub slope: f64,
 }
 
-/// The unit vector along the part of a unit vector that is square to another one; `None` where both are
-/// parallel up to rounding.
+/// The part of the unit vector `dir` perpendicular to `axis`, normalised. `None` if they are parallel up to
+/// rounding.
 pub(super) fn across(dir: DVec3, axis: DVec3) -> Option<DVec3> {
     let part = dir.reject_from_normalized(axis);
     let length = part.length();
@@ -127,7 +128,7 @@ impl Piece {
 }
 
 impl Generator {
-    /// How far along `outward` the line through `p` leaves the surface, near this line.
+    /// The distance along `outward` at which the line through `p` leaves the surface, near this generator.
     pub fn exit(&self, p: DVec3, outward: DVec3) -> Option<f64> {
         let [a, b] = self.ends;
         let normal = self.surface.normal_at(a.midpoint(b));
@@ -150,7 +151,7 @@ impl RuledSurface {
         -self.slope / self.slope.hypot(1.0)
     }
 
-    /// The radius at a point's place along the axis.
+    /// The radius at the height of `p`.
     pub fn radius_at(&self, p: DVec3) -> f64 {
         self.radius + self.slope * self.axis.dot(p - self.origin)
     }
@@ -162,8 +163,8 @@ impl RuledSurface {
         (around - self.axis * self.slope) / self.slope.hypot(1.0)
     }
 
-    /// How far along the unit vector `dir` the line through `p` leaves the surface, of two places the one
-    /// that is nearer to the height `about`.
+    /// The distance along the unit vector `dir` at which the line through `p` leaves the surface. Of two such
+    /// distances, the one nearer to `about`.
     pub fn exit(&self, p: DVec3, dir: DVec3, about: f64) -> Option<f64> {
         let from = p - self.origin;
         let (height, rise) = (self.axis.dot(from), self.axis.dot(dir));

@@ -1,4 +1,4 @@
-//! Places of a contact patch, and the names they keep from frame to frame.
+//! Places of a contact patch, and features that identify them from frame to frame.
 
 use glam::DVec3;
 
@@ -8,30 +8,30 @@ use crate::support::{EdgeId, FaceId, VertexId};
 /// A place of contact: a point on each surface, on one line along the contact normal. In frame 1.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactPlace {
-    /// On the surface of the first shape.
+    /// The point on the surface of the first shape.
     pub on_1: DVec3,
-    /// On that of the second shape.
+    /// The point on the surface of the second shape.
     pub on_2: DVec3,
-    /// From the first to the second: negative where they overlap.
+    /// The distance from the first point to the second, negative where the shapes overlap.
     pub distance: f64,
-    /// What meets there.
+    /// The features that meet there.
     pub features: [Feature; 2],
 }
 
-/// What of a piece a place is on.
+/// The part of a piece on which a place lies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Spot {
-    /// Its inside.
+    /// The interior.
     Inside,
     /// The extreme point along the normal.
     Extreme(VertexId),
     /// A corner of a polygon.
     Corner(VertexId),
-    /// A side of a polygon, by its first corner.
+    /// An edge of a polygon, identified by its first corner.
     Side(VertexId),
     /// A sector of a circle.
     Arc(usize),
-    /// Where a circle crosses a side of the other outline: on the way in, or out.
+    /// Where a circle crosses an edge of the other outline, on the way in or out.
     Crossing(usize),
     /// An end of a line.
     End(usize),

@@ -1,4 +1,4 @@
-//! Polytopes as bodies: faces, edges, and the line or the point that a capsule or a ball is around.
+//! Polytopes as bodies: faces, edges, and the cores of capsules and balls.
 
 use glam::DVec3;
 
@@ -105,7 +105,7 @@ impl<P: Polytope> Body for P {
     }
 }
 
-/// The line of a capsule's side that is extreme along `dir`.
+/// The line on the side of a capsule that is extreme along `dir`.
 fn line_piece([a, b]: [DVec3; 2], dir: DVec3, border: f64) -> Option<Piece> {
     let axis = (b - a).try_normalize()?;
     let outward = across(dir.normalize(), axis)?;

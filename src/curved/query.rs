@@ -1,4 +1,4 @@
-//! The order of the stages, from a remembered normal to an answer that is proved.
+//! The order of the stages, from a remembered normal to a proved answer.
 
 use std::ops::ControlFlow;
 
@@ -16,64 +16,64 @@ use crate::support::{Cso, CsoVertex, VertexId};
 use crate::tolerance::DEPTH_GAP;
 use crate::tuning::{FLUSH_TIE, STILL, TILT};
 
-/// Memory for queries.
+/// Memory that queries work in.
 #[derive(Clone, Debug, Default)]
 pub struct CurvedScratch {
     /// The contact patch of the last answer.
     pub patch: Patch,
     /// The expanding polytope.
     pub epa: EpaScratch,
-    /// Points of the difference where it begins.
+    /// Points of the difference at which EPA starts.
     pub(super) seeds: Vec<CsoVertex>,
 }
 
-/// What is known of a pair from the frame before.
+/// What the previous frame tells about a pair.
 #[derive(Clone, Copy, Debug)]
 pub enum Hint {
     /// Nothing.
     None,
     /// The shapes were apart along this unit axis, at these vertices.
     Apart(DVec3, [VertexId; 2]),
-    /// They were in contact along these unit normals, out of each shape in its frame. The last is whether their
-    /// cores overlapped.
+    /// The shapes were in contact along these unit normals, each pointing out of its shape and in its frame;
+    /// and whether their cores overlapped.
     Contact([DVec3; 2], bool),
 }
 
 /// The answer to a query about cores, in frame 1.
 #[derive(Clone, Copy, Debug)]
 pub enum CurvedAnswer {
-    /// The bounding spheres are farther apart than was asked about.
+    /// The bounding spheres are farther apart than the maximum distance.
     SpheresApart,
-    /// The cores are farther apart than was asked about.
+    /// The cores are farther apart than the maximum distance.
     Separated(SeparatingAxis),
-    /// The cores are this near, or overlap. The contact patch has the places once it is completed.
+    /// The cores are within the maximum distance, or overlap. Complete the contact patch to get its places.
     Near {
-        /// Of the cores.
+        /// The signed distance of the cores.
         signed_distance: f64,
         /// From shape 1 to shape 2.
         normal: DVec3,
-        /// Where they are nearest or overlap most: on shape 1.
+        /// The point on shape 1 where the shapes are nearest or overlap most.
         on_1: DVec3,
     },
 }
 
-/// Finds a normal that separates more than the one at hand, or as much.
+/// Finds a candidate for a better normal than the one at hand.
 type FindNormal<A, B> =
     fn(&Cso<'_, A, B>, &NormalSeparation, &mut Cost) -> Option<NormalSeparation>;
 
-/// A query about two shapes, of which one is curved.
+/// A query about two shapes, at least one of which is curved.
 pub struct CurvedQuery<'a, 'c, A, B> {
     /// The pair without borders.
     pub cso: &'a Cso<'c, A, B>,
     /// The widths of the rounded borders.
     pub border_radii: [f64; 2],
-    /// Answers beyond this distance of the cores are [`CurvedAnswer::Separated`].
+    /// If the cores are farther apart than this, the answer is [`CurvedAnswer::Separated`].
     pub max_distance: f64,
-    /// The contacts of the frame before.
+    /// The contacts of the previous frame.
     pub(crate) last: Option<&'a LastContacts>,
     /// Memory to work in.
     pub scratch: &'a mut CurvedScratch,
-    /// Filled in with what the query cost.
+    /// The cost of the query is added here.
     pub cost: &'a mut Cost,
 }
 
@@ -111,7 +111,7 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         Some((answer, start.epa()))
     }
 
-    /// Along what is remembered, or along the line of centres.
+    /// The separation along the remembered axis or normal, or along the line of centres.
     fn along_hint(&mut self, hint: Hint) -> NormalSeparation {
         let cso = self.cso;
         let (axis, ids) = match hint {
@@ -129,14 +129,14 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         NormalSeparation::along(cso, axis.normalize(), &start, self.cost)
     }
 
-    /// Along a normal that is tilted away from where the shapes come too near.
+    /// The separation along an axis that is tilted away from the point where the shapes come too near.
     fn tilted(&mut self, at: &NormalSeparation) -> NormalSeparation {
         let aside = at.extreme.w - at.normal * at.normal.dot(at.extreme.w);
         let tilted = (at.normal - aside.normalize_or_zero() * TILT).normalize();
         NormalSeparation::along(self.cso, tilted, &at.extreme, self.cost)
     }
 
-    /// An answer by the pieces of surface near a normal, or the best normal that was found.
+    /// The answer, if the pieces of surface near a normal give it; otherwise the best normal found.
     pub(super) fn stationary(
         &mut self,
         at: &NormalSeparation,
@@ -156,7 +156,7 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
             if found.distance > self.max_distance {
                 return ControlFlow::Break(apart(&found));
             }
-            // A worse one than is known cannot be proved.
+            // A normal that is worse than the best one cannot be proved.
             if found.distance < best.distance - self.tolerance() {
                 continue;
             }

@@ -1,4 +1,4 @@
-//! What proves a depth where a rim crosses a straight edge.
+//! The proof of a depth where a rim crosses a straight edge.
 
 use glam::DVec3;
 
@@ -7,11 +7,11 @@ use super::stationary::NormalSeparation;
 use crate::support::Cso;
 use crate::tolerance::SAME_NORMAL;
 
-/// The point of shape 1 where a rim and an edge of overlapping shapes cross, if these prove that no depth is less
-/// than that along the normal at hand, up to `tolerance`.
+/// The point of shape 1 where a rim and an edge of overlapping shapes cross, if they prove that no direction
+/// has a smaller depth than the normal at hand, up to `tolerance`.
 ///
-/// The disc in the rim, swept along the edge, is a part of the difference: an elliptic cylinder with slanted
-/// ends. The depth is its least one if the ball of the depth is in it.
+/// The disc within the rim, swept along the edge, lies in the difference. It is an elliptic cylinder with
+/// slanted ends. The depth is proved if this cylinder contains the ball with the depth as radius.
 pub(super) fn proved_crossing<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
@@ -79,20 +79,21 @@ impl Sweep {
         let length = from.distance(to);
         let (CircularEdge { axis, radius, .. }, along) = (self.rim, (to - from) / length);
         let rise = axis.dot(along);
-        // An edge along the axis or across it has no such cylinder.
+        // There is no such cylinder if the edge is parallel or perpendicular to the axis.
         let Some(wide) = axis.cross(along).try_normalize() else {
             return false;
         };
         if self.normal.dot(along).abs() > SAME_NORMAL || rise.abs() < SAME_NORMAL {
             return false;
         }
-        // Where on the edge the lines of the cylinder through the ball are in the plane of the disc.
+        // The generators through the ball must meet the plane of the disc within the edge.
         let height = axis.dot(self.on_rim - from) / rise;
         let reach = depth / rise.abs();
         if height < reach || height + reach > length {
             return false;
         }
-        // Inside of an ellipse, the nearest point is that on whose normal a point is, up to the long axis.
+        // Within an ellipse, the nearest boundary point is the one whose normal passes through the given
+        // point, as long as that is not beyond the long axis.
         let outward = (self.on_rim - self.rim.center) / radius;
         let (cosine, sine) = (outward.dot(wide), outward.dot(axis.cross(wide)));
         let most = rise.abs() * radius * (rise * cosine).hypot(sine);

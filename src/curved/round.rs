@@ -1,4 +1,4 @@
-//! What cylinders and cones have in common: they are round about the y axis, with discs at their ends.
+//! Geometry shared by cylinders and cones: rotationally symmetric about the y axis, with discs at their ends.
 
 use glam::DVec3;
 
@@ -17,17 +17,17 @@ pub(super) fn end(normal: DVec3, offset: f64, radius: f64) -> FlatSide {
     }
 }
 
-/// How far inside the rim of an end a point of its plane is.
+/// The distance of a point in the plane of an end from its rim, positive inside.
 pub(super) fn inset_of_end(p: DVec3, radius: f64) -> f64 {
     radius - p.x.hypot(p.z)
 }
 
-/// Whether a unit vector is about along the axis.
+/// Whether a unit vector is nearly parallel to the axis.
 pub(super) fn is_along_axis(dir: DVec3) -> bool {
     dir.with_y(0.0).length_squared() < SMALL_TURN * SMALL_TURN
 }
 
-/// The point of the end at a height that is beside another point along the axis, if there is one.
+/// The projection of `near` along the axis onto the end at `height`, if it lies within the rim.
 pub(super) fn point_on_end(near: DVec3, height: f64, radius: f64) -> Option<DVec3> {
     let from_axis = near.with_y(0.0);
     let is_on_it = from_axis.length_squared() <= radius * radius;

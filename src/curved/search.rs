@@ -1,4 +1,4 @@
-//! Searches by GJK and EPA: for the pieces of surface in contact, and for the answer where no piece gives it.
+//! Searches by GJK and EPA, for the pieces of surface in contact, and for the answer if no piece proves it.
 
 use std::ops::ControlFlow;
 
@@ -16,8 +16,8 @@ use crate::tolerance::{FINE_GAP, SAME_GAP};
 use crate::tuning::COARSE_GAP;
 
 impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
-    /// Finds the way by a coarse search of the distance, and ends by a fine one where no piece answers. `None`
-    /// if the cores touch or overlap.
+    /// A coarse search for the distance leads to the pieces in contact. If they do not prove the answer, a
+    /// fine search finds it. `None` if the cores touch or overlap.
     pub(super) fn by_gjk(
         &mut self,
         at: &NormalSeparation,
@@ -66,9 +66,9 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         None
     }
 
-    /// Finds the way by a coarse search of the depth, unless `best` is from the frame before, and ends by a
-    /// fine one where no piece answers. That may only prove that there is no smaller depth than the best. The
-    /// searches begin at the pieces of surface along the best normal.
+    /// A coarse search for the depth leads to the pieces in contact. If they do not prove the answer, a fine
+    /// search finds it, or proves that there is no smaller depth than `best`. If `best` is from the previous
+    /// frame (`is_known`), the coarse search is left out. Searches start at the pieces along the best normal.
     pub(super) fn by_epa(
         &mut self,
         mut best: NormalSeparation,
@@ -109,8 +109,8 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         Some(self.along(&best, on_1))
     }
 
-    /// The answer along a normal that is known to be the best one. Where no pieces are over each other, the
-    /// contact is at a point of the first core.
+    /// The answer along a normal that is known to be the best one. If no pieces overlap, the contact is at a
+    /// point of the first core.
     fn along(&mut self, best: &NormalSeparation, on_1: DVec3) -> CurvedAnswer {
         if best.distance > self.max_distance {
             return apart(best);
@@ -131,7 +131,7 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         }
     }
 
-    /// Where the first core is deepest along a normal.
+    /// The point of the first core that is deepest along a normal.
     fn witness(&mut self, best: &NormalSeparation) -> Option<DVec3> {
         let (cso, normal) = (self.cso, best.normal);
         let closest = moved_apart(

@@ -1,4 +1,4 @@
-//! Points of the Minkowski difference where a search of the depth begins.
+//! Points of the Minkowski difference at which the search for the depth starts.
 
 use glam::DVec3;
 
@@ -7,8 +7,8 @@ use super::piece::{FlatSide, Outline, Piece};
 use crate::support::{CsoVertex, VertexId};
 
 impl Patch {
-    /// Corners of each piece minus the extreme point of the other shape: what the surface of the difference looks
-    /// like along the normal.
+    /// Corners of each piece minus the extreme point of the other shape. They outline the surface of the
+    /// difference along the normal.
     pub(super) fn outline_differences(&self, differences: &mut Vec<CsoVertex>) {
         differences.clear();
         for side in 0..2 {

@@ -1,4 +1,5 @@
-//! Normals along which two shapes may be nearest or overlap least, by the pieces of surface that meet.
+//! Candidate normals along which two shapes may be nearest or overlap least, derived from the pieces of
+//! surface that meet.
 
 use glam::{DVec2, DVec3};
 
@@ -10,7 +11,7 @@ use crate::support::{Cso, CsoVertex};
 use crate::tolerance::{PARALLEL_AXES, SETTLED_ANGLE};
 use crate::tuning::{LONGEST_STEP, SMALL_TURN};
 
-/// A normal, the vertex of the difference that is extreme along it, and how far apart the shapes are.
+/// A normal, the extreme vertex of the difference along it, and the separation of the shapes along it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct NormalSeparation {
     pub normal: DVec3,
@@ -19,7 +20,7 @@ pub(super) struct NormalSeparation {
 }
 
 impl NormalSeparation {
-    /// Along a unit vector; climbs start where they ended along another one.
+    /// The separation along a unit vector. Climbs start at the vertices of `near`, found along another one.
     pub fn along<A: Body, B: Body>(
         cso: &Cso<'_, A, B>,
         normal: DVec3,
@@ -43,7 +44,7 @@ impl NormalSeparation {
     }
 }
 
-/// The normal of a flat side that separates most, of those near a known normal.
+/// Of the flat sides whose normal is close to the one at hand, the normal with the greatest separation.
 pub(super) fn near_flat<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
@@ -52,7 +53,7 @@ pub(super) fn near_flat<A: Body, B: Body>(
     flat_within(cso, at, SMALL_TURN, cost)
 }
 
-/// The normal of a flat side that separates most, of those at the extreme vertices.
+/// Of the flat sides at the extreme vertices, the normal with the greatest separation.
 pub(super) fn flat<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
@@ -79,12 +80,12 @@ fn flat_within<A: Body, B: Body>(
         .reduce(NormalSeparation::or)
 }
 
-/// Whether an edge or a ruled side has normals near this one.
+/// Whether an edge or a ruled side has normals close to `about`.
 fn is_near(ruling: &Ruling, about: DVec3) -> bool {
     (ruling.axis.dot(about) - ruling.sine).abs() < SMALL_TURN
 }
 
-/// The normal that suits two rulings, one of each shape, and separates most.
+/// The normal with the greatest separation that satisfies two rulings, one of each shape.
 pub(super) fn ruled<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
@@ -103,7 +104,7 @@ pub(super) fn ruled<A: Body, B: Body>(
     best
 }
 
-/// The rulings of shape 2 in frame 1, as the contact normal sees them.
+/// The rulings of shape 2 in frame 1, as conditions for the contact normal.
 fn rulings_2<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
@@ -116,7 +117,7 @@ fn rulings_2<A: Body, B: Body>(
     })
 }
 
-/// The unit vector with given sines to two axes that is nearer to `about`.
+/// Of the two unit vectors that satisfy both rulings, the one nearer to `about`.
 fn suiting_both(first: &Ruling, second: &Ruling, about: DVec3) -> Option<DVec3> {
     let cross = first.axis.cross(second.axis);
     let area = cross.length_squared();
@@ -134,7 +135,7 @@ fn suiting_both(first: &Ruling, second: &Ruling, about: DVec3) -> Option<DVec3> 
     })
 }
 
-/// The normal that suits one ruling and separates most.
+/// The normal with the greatest separation that satisfies one ruling.
 pub(super) fn along_rulings<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
@@ -151,11 +152,11 @@ pub(super) fn along_rulings<A: Body, B: Body>(
     best
 }
 
-/// Steps of Newton's method, which doubles the digits in each.
+/// Newton's method doubles the number of correct digits in each step.
 pub(super) const MAX_NEWTON_STEPS: usize = 5;
 
-/// The normal near one at hand that separates most where no edge and no side bounds it: between vertices and
-/// rims. By Newton's method.
+/// The normal close to the one at hand with the greatest separation, between vertices and rims, where no
+/// ruling restricts it. Found by Newton's method.
 pub(super) fn smooth<A: Body, B: Body>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
