@@ -1,7 +1,5 @@
 //! No stage allocates once its buffers have grown: counted while coins rest on a box.
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 use std::f32::consts::TAU;
 
 use glam::Vec3;
@@ -10,27 +8,7 @@ use parry3d::math::{Pose, Rotation};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::SharedShape;
 
-/// Counts the allocations of each thread.
-struct Counting;
-
-thread_local! {
-    static ALLOCATIONS: Cell<usize> = const { Cell::new(0) };
-}
-
-// SAFETY: the system's allocator does all the work.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        ALLOCATIONS.with(|count| count.set(count.get() + 1));
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        unsafe { System.dealloc(memory, layout) }
-    }
-}
-
-#[global_allocator]
-static COUNTING: Counting = Counting;
+use crate::counting::allocations;
 
 fn coin(sides: usize) -> Vec<Vec3> {
     let corner = |i: usize| {
@@ -42,7 +20,7 @@ fn coin(sides: usize) -> Vec<Vec3> {
 
 /// Allocations of 200 updates after 220 others. Contacts may keep their places for long, so it takes
 /// some updates until every buffer has grown.
-fn allocations(shapes: [&SharedShape; 2], pose: impl Fn(usize) -> Pose) -> usize {
+fn allocations_at_rest(shapes: [&SharedShape; 2], pose: impl Fn(usize) -> Pose) -> usize {
     let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
     let dispatcher = IsaGjkDispatcher::default();
     let mut update = |frame| {
@@ -53,9 +31,9 @@ fn allocations(shapes: [&SharedShape; 2], pose: impl Fn(usize) -> Pose) -> usize
         assert!(!manifolds[0].points.is_empty());
     };
     (0..220).for_each(&mut update);
-    let before = ALLOCATIONS.get();
+    let before = allocations();
     (220..420).for_each(&mut update);
-    ALLOCATIONS.get() - before
+    allocations() - before
 }
 
 #[test]
@@ -83,7 +61,7 @@ fn resting_coins_allocate_nothing() {
                         Pose::from_parts(pose.translation + Vec3::Y * lift, pose.rotation)
                     };
                     assert_eq!(
-                        allocations(shapes, pose),
+                        allocations_at_rest(shapes, pose),
                         0,
                         "{sides} sides, turning by {spin}"
                     );
@@ -101,6 +79,10 @@ fn resting_capsules_allocate_nothing() {
             let turn = Rotation::from_scaled_axis(Vec3::new(1e-6, spin, 0.0) * frame as f32);
             Pose::from_parts(Vec3::new(0.199, 0.1, 0.0), turn)
         };
-        assert_eq!(allocations([&log, &log], pose), 0, "turning by {spin}");
+        assert_eq!(
+            allocations_at_rest([&log, &log], pose),
+            0,
+            "turning by {spin}"
+        );
     }
 }

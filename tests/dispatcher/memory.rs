@@ -1,13 +1,11 @@
 //! Prepared hulls of dropped plain hulls do not take memory for long, and what is in use is not prepared
 //! again and again.
-//!
-//! All tests count the same memory, so they take turns.
 
-use std::alloc::{GlobalAlloc, Layout, System};
 use std::collections::VecDeque;
+use std::env;
 use std::panic::resume_unwind;
-use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
-use std::sync::{Mutex, PoisonError, mpsc};
+use std::process::Command;
+use std::sync::mpsc;
 use std::thread;
 
 use isa_gjk::IsaGjkDispatcher;
@@ -16,38 +14,25 @@ use rapier3d::prelude::*;
 use testkit::generate::Rng;
 use testkit::memory::cold_manifold;
 
-struct Counting;
-
-static BYTES: AtomicUsize = AtomicUsize::new(0);
-static CALLS: AtomicUsize = AtomicUsize::new(0);
-
-// SAFETY: all is left to the system's allocator.
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        BYTES.fetch_add(layout.size(), Relaxed);
-        CALLS.fetch_add(1, Relaxed);
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
-        BYTES.fetch_sub(layout.size(), Relaxed);
-        unsafe { System.dealloc(memory, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
+use crate::counting::{allocations, bytes};
 
 const MIB: usize = 1 << 20;
 
-fn bytes() -> usize {
-    BYTES.load(Relaxed)
+/// Runs this binary once more, for the other tests of this file: they count the memory of the whole process,
+/// so they run in one of their own, one at a time.
+#[test]
+fn prepared_hulls_take_little_memory() {
+    let program = env::current_exe().expect("a program");
+    let tests = ["--ignored", "--test-threads=1", "--nocapture", "memory::"];
+    let output = Command::new(program).args(tests).output().expect("it runs");
+    let [text, errors] =
+        [output.stdout, output.stderr].map(|text| String::from_utf8_lossy(&text).into_owned());
+    assert!(output.status.success(), "{text}{errors}");
+    println!("{text}");
 }
 
-/// Runs a test alone, on a thread of its own: what threads keep is freed as they end.
-fn in_turn(test: impl FnOnce() + Send + 'static) {
-    static TURN: Mutex<()> = Mutex::new(());
-    let _turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
+/// Runs a test on a thread of its own: what threads keep is freed as they end.
+fn on_a_thread(test: impl FnOnce() + Send + 'static) {
     if let Err(panic) = thread::spawn(test).join() {
         resume_unwind(panic);
     }
@@ -90,8 +75,9 @@ fn churn(dispatcher: &IsaGjkDispatcher, rng: &mut Rng, hulls: usize, live: usize
 }
 
 #[test]
+#[ignore = "counts the memory of a process of its own"]
 fn hulls_that_came_and_went_take_no_memory() {
-    in_turn(|| {
+    on_a_thread(|| {
         let dispatcher = IsaGjkDispatcher::default();
         let mut rng = Rng::new(131);
         let before = bytes();
@@ -105,8 +91,9 @@ fn hulls_that_came_and_went_take_no_memory() {
 
 /// A hull that comes, is in a world for a step, and goes.
 #[test]
+#[ignore = "counts the memory of a process of its own"]
 fn debris_of_a_world_takes_no_memory() {
-    in_turn(|| {
+    on_a_thread(|| {
         let dispatcher = IsaGjkDispatcher::default();
         let mut rng = Rng::new(132);
         let mut world = PhysicsWorld {
@@ -128,8 +115,9 @@ fn debris_of_a_world_takes_no_memory() {
 }
 
 #[test]
+#[ignore = "counts the memory of a process of its own"]
 fn trimming_reaches_other_threads_and_changes_no_answer() {
-    in_turn(|| {
+    on_a_thread(|| {
         let dispatcher = IsaGjkDispatcher::default();
         let (to_thread, orders) = mpsc::channel();
         let (to_us, answers) = mpsc::channel();
@@ -173,8 +161,9 @@ fn trimming_reaches_other_threads_and_changes_no_answer() {
 
 /// As `docs/measured.md` states it.
 #[test]
+#[ignore = "counts the memory of a process of its own"]
 fn a_prepared_hull_takes_what_is_stated() {
-    in_turn(|| {
+    on_a_thread(|| {
         let dispatcher = IsaGjkDispatcher::default();
         let mut rng = Rng::new(136);
         let ball = SharedShape::ball(0.5);
@@ -198,19 +187,20 @@ fn a_prepared_hull_takes_what_is_stated() {
 
 /// More hulls than may stay unused, each queried in turn.
 #[test]
+#[ignore = "counts the memory of a process of its own"]
 fn many_hulls_in_use_are_prepared_once() {
-    in_turn(|| {
+    on_a_thread(|| {
         let dispatcher = IsaGjkDispatcher::default();
         let mut rng = Rng::new(134);
         let ball = SharedShape::ball(0.5);
         let hulls: Vec<_> = (0..450).map(|_| round(&mut rng, 1000, 0.5)).collect();
         let before = bytes();
         let ask_all = || {
-            let calls = CALLS.load(Relaxed);
+            let calls = allocations();
             for hull in &hulls {
                 touch(&dispatcher, [hull, &ball]);
             }
-            CALLS.load(Relaxed) - calls
+            allocations() - calls
         };
         let first = ask_all();
         // Hulls that were dropped before it was known that all are in use are prepared once more.
@@ -225,8 +215,9 @@ fn many_hulls_in_use_are_prepared_once() {
 
 /// A hull that was dropped, as others came, is answered as before when it comes back.
 #[test]
+#[ignore = "counts the memory of a process of its own"]
 fn what_was_dropped_is_answered_as_before() {
-    in_turn(|| {
+    on_a_thread(|| {
         let dispatcher = IsaGjkDispatcher::default();
         let mut rng = Rng::new(135);
         let pairs: Vec<_> = (0..50)
@@ -240,8 +231,8 @@ fn what_was_dropped_is_answered_as_before() {
         };
         let before = answers();
         churn(&dispatcher, &mut rng, 5_000, 30);
-        let calls = CALLS.load(Relaxed);
+        let calls = allocations();
         assert_eq!(before, answers());
-        assert!(CALLS.load(Relaxed) - calls > 50 * 10, "nothing was dropped");
+        assert!(allocations() - calls > 50 * 10, "nothing was dropped");
     });
 }
