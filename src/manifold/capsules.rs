@@ -87,7 +87,7 @@ impl Capsule {
         self.a + self.axis() * share
     }
 
-    /// The share of the way from `a` to `b` at which the core is nearest to a point.
+    /// The fraction of the way from `a` to `b` at which the core is nearest to a point.
     fn nearest_share(&self, p: DVec3) -> f64 {
         let axis = self.axis();
         let length_squared = axis.length_squared();
@@ -98,8 +98,8 @@ impl Capsule {
         }
     }
 
-    /// How far along the unit vector `dir` a line through `p` leaves the capsule; `None` if the line misses
-    /// it.
+    /// The distance along the unit vector `dir` at which the line through `p` leaves the capsule; `None` if
+    /// the line misses it.
     fn exit(&self, p: DVec3, dir: DVec3) -> Option<f64> {
         let axis = self.axis();
         let length = axis.length();
@@ -154,8 +154,8 @@ fn nearest_on_cores(first: Capsule, second: Capsule) -> [DVec3; 2] {
     ends.into_iter().fold(inner, nearer)
 }
 
-/// The direction in which the capsules are nearest, or overlap least. If the cores meet, every direction
-/// square to both axes leads out after the sum of the radii.
+/// The direction in which the capsules are nearest, or overlap least. If the cores meet, the depth is the sum
+/// of the radii, in every direction perpendicular to both axes.
 fn normal(first: Capsule, second: Capsule, between: DVec3) -> DVec3 {
     let (d1, d2) = (first.axis(), second.axis());
     let size = d1.length() + d2.length() + first.radius + second.radius;
@@ -202,7 +202,7 @@ fn common_line(
     let core = |capsule: &Capsule, [a, b]: [f64; 2], at| capsule.at((at - a) / (b - a));
     let contact = |at: f64, place| {
         let (c1, c2) = (core(&first, ends[0], at), core(&second, ends[1], at));
-        // Between the axes, in proportion to the radii, the surfaces are nearest.
+        // The surfaces are nearest where the way between the axes is divided in proportion to the radii.
         let offset = beside.dot(c2 - c1) * first.radius / radii;
         let on_line = c1 + beside * offset;
         let out = first.exit(on_line, normal)?;

@@ -1,4 +1,4 @@
-//! The contact plane as each shape sees it, and the heights of faces over it.
+//! The contact plane in the frame of each shape, and the heights of faces over it.
 
 use crate::simd::f32x4;
 use glam::{DVec3, Vec2, Vec3};
@@ -9,7 +9,7 @@ use crate::simd::LANES;
 use crate::support::{FaceId, Polytope};
 use crate::tuning::EDGE_ON;
 
-/// The contact plane as a shape sees it. Its origin is the witness point of shape 1.
+/// The contact plane in the frame of a shape. Its origin is the witness point of shape 1.
 pub(super) struct ContactFrame {
     origin: DVec3,
     pub normal: DVec3,

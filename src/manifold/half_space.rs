@@ -76,8 +76,8 @@ pub fn half_space_contacts(
     contacts(&selection)
 }
 
-/// The corners of the face that lies on a half-space, as far as they are at most `max_distance` from it,
-/// counter-clockwise seen from there. There are none if the face is edge-on.
+/// The corners of the face that lies on a half-space, cut off at `max_distance` from it, counter-clockwise
+/// seen from the half-space. There are none if the face is edge-on.
 pub fn half_space_polygon(
     shape: &impl Polytope,
     near: &Proximity,

@@ -37,8 +37,8 @@ enum Origin {
 }
 
 /// The corners of the region in which the surfaces around the witness are at most `max_distance` apart,
-/// counter-clockwise seen from shape 2. There are none if the witness is all that is near, or if its faces
-/// are edge-on.
+/// counter-clockwise seen from shape 2. There are none if only the witness is that near, or if its faces are
+/// edge-on.
 pub fn contact_polygon<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     near: &Proximity,

@@ -4,7 +4,7 @@ use super::clip::Clipper;
 use super::contact_frame::FaceHeight;
 use super::reduce::Candidates;
 
-/// Memory for manifolds. It is kept from one to the next, so that they do not allocate.
+/// Memory for manifolds, reused from one to the next, so that they do not allocate.
 #[derive(Clone, Debug, Default)]
 pub struct ClipScratch {
     pub(super) planes: [Vec<FaceHeight>; 2],

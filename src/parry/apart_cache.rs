@@ -1,13 +1,12 @@
 //! Proofs that two hulls are apart, which hold while the hulls hardly move.
 //!
-//! A proof is that of an axis, or of the bounding spheres, at some pose. If the second shape is at another
-//! pose now, none of its points is farther from where it was, seen from the shape in whose frame the axis is
-//! kept, than the translation and the chord of the rotation allow. What this leaves of the gap is proved. The
-//! pose of the proof is compared with the present one, so nothing adds up from frame to frame.
+//! An axis, or the bounding spheres, proved a gap at some pose. Now the second shape is at another pose. In
+//! the frame in which the axis is stored, none of its points has moved farther than the translation plus the
+//! chord of the rotation. What this leaves of the gap is still proved. The present pose is compared with that
+//! of the proof, so errors do not add up from frame to frame.
 //!
-//! A query would find the same axis, or the spheres, to separate the shapes, and would leave the manifold as
-//! it is: a margin covers what both are rounded by. So whether a proof is here changes only how long an answer
-//! takes.
+//! A query would find that the same axis or the spheres separate the shapes, and would leave the manifold as
+//! it is. A margin covers the rounding of both. So a proof in this cache only saves time.
 
 use glam::{DVec3, Quat, Vec3};
 use parry3d::math::Pose;
@@ -17,11 +16,11 @@ use crate::slot::slot;
 use crate::stats::Stage;
 use crate::tolerance::{NEARLY_UNIT, PROOF_MARGIN};
 
-/// How many proofs there are, if no two pairs share a slot: 256 KiB, once there is the first.
+/// The number of slots. They take 256 KiB, allocated with the first proof.
 const SLOTS: usize = 1 << SLOT_BITS;
 const SLOT_BITS: u32 = 12;
 
-/// Proofs of many pairs. Where to look is decided by a key, and what is found there by its shapes and axis.
+/// Proofs of many pairs. A key gives the slot; shapes and axis tell whether the proof in it is that of the pair.
 #[derive(Default)]
 pub(crate) struct ApartCache(Box<[Proof]>);
 
@@ -32,18 +31,18 @@ struct Proof {
     rotation: Quat,
     shapes: [Option<ShapeId>; 2],
     translation: Vec3,
-    /// How far the shapes were apart, less the margin.
+    /// The distance between the shapes, less the margin.
     separation: f32,
     axis: Vec3,
     /// The longest lever of a rotation.
     lever: f32,
 }
 
-/// Whose proof it is.
+/// The pair of a proof.
 pub(crate) struct ApartPair<'a> {
     pub key: u64,
     pub shapes: [ShapeId; 2],
-    /// As the manifold keeps it: zero stands for the spheres.
+    /// The axis as the manifold stores it. Zero stands for the bounding spheres.
     pub axis: Vec3,
     pub pose: &'a Pose,
 }
@@ -72,7 +71,7 @@ impl ApartCache {
             && proof.separation_at(pair.pose) > max_distance
     }
 
-    /// Keeps the proof of a separation. `size` is that of both shapes, and no point that moves is farther than
+    /// Stores the proof of a separation. `size` is the size of both shapes. No moving point is farther than
     /// `lever` from the centre of its rotation.
     #[inline(never)]
     pub fn store(&mut self, pair: &ApartPair<'_>, separation: f64, [size, lever]: [f64; 2]) {
@@ -87,7 +86,7 @@ impl ApartCache {
             rotation: pair.pose.rotation,
             shapes: pair.shapes.map(Some),
             translation: pair.pose.translation,
-            // Shapes may be farther apart than f32 can say.
+            // The distance may exceed the range of f32.
             separation: ((separation - margin) as f32).min(f32::MAX),
             axis: pair.axis,
             lever: (lever / PROOF_MARGIN) as f32,
@@ -96,7 +95,7 @@ impl ApartCache {
 }
 
 impl Proof {
-    /// How far the shapes are apart at another pose, at least. Not a number if the pose is not.
+    /// A lower bound of the distance between the shapes at another pose. NaN if the pose has a NaN.
     #[inline]
     fn separation_at(&self, pose: &Pose) -> f64 {
         if !is_nearly_unit(pose.rotation) {

@@ -38,7 +38,7 @@ impl<'a> Constraints<'a> {
         }
     }
 
-    /// Hands them to `f` as parry's routines want them.
+    /// Passes them to `f` in the form that parry's routines take.
     pub fn with<T>(self, f: impl FnOnce(Option<&dyn NormalConstraints>) -> T) -> T {
         match self {
             Self::None => f(None),
@@ -52,7 +52,7 @@ impl<'a> Constraints<'a> {
     }
 }
 
-/// Pseudo-normals of a triangle that take what lies in its plane up to rounding for a direction to its
+/// Pseudo-normals of a triangle. A direction that lies in its plane up to rounding counts as one to its
 /// front. Hulls that stand upright in a floor have such normals.
 struct Leaning(TrianglePseudoNormals);
 
@@ -66,18 +66,18 @@ impl NormalConstraints for Leaning {
     }
 }
 
-/// Normals of a contact, in the caller's order, each as its own shape sees it.
+/// Normals of a contact in the caller's order, each in the frame of its shape.
 pub(crate) struct Corrected {
     pub normals: [Vec3; 2],
-    /// Of normals that are not near the query's: the distance along them of the shapes as wholes, beneath
-    /// which there is no contact.
+    /// For normals that are not near the query's: the distance of the whole shapes along them. No contact is
+    /// deeper.
     pub least: Option<f64>,
 }
 
 /// A pair with parts.
 pub(crate) struct ConstrainedPair<'a, 'c, A, B> {
     pub cso: &'a Cso<'c, A, B>,
-    /// That of the shapes of `cso`.
+    /// The order of the shapes of `cso`.
     pub order: PairOrder,
     /// In the caller's order, as `pos12`.
     pub constraints: [Constraints<'a>; 2],
@@ -86,8 +86,8 @@ pub(crate) struct ConstrainedPair<'a, 'c, A, B> {
 }
 
 impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
-    /// The normals, corrected: first out of cuts, where another part goes on, then into the cones of outer
-    /// normals. `None` if there can be no contact along them.
+    /// The corrected normals. A normal out of a cut, where another part continues, is replaced. Then normals
+    /// are projected into the cones of outer normals. `None` if there can be no contact along them.
     #[inline(never)]
     pub fn correct(&self, normals: [Vec3; 2]) -> Option<Corrected> {
         let mut corrected = Corrected {
@@ -107,7 +107,8 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
         is_possible.then_some(corrected)
     }
 
-    /// The outer normals of a part along which the shapes overlap least, but by more than at a distance.
+    /// Of the outer normals of a part, the one along which the shapes overlap least, if they are nearer along
+    /// it than `beyond`.
     pub fn way_out(&self, side: usize, beyond: f64) -> Option<Corrected> {
         let rotation = self.pos12.rotation;
         let outer = self.constraints[side].part()?.outer_normals();

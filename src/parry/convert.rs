@@ -37,7 +37,7 @@ pub(crate) enum Core {
 }
 
 impl Core {
-    /// With the radius of the border.
+    /// The core of a shape, and the radius of its border.
     #[inline]
     pub fn of(shape: &dyn Shape) -> Option<(Self, Real)> {
         // The typed shape of a user's own shape may only be similar.
@@ -47,7 +47,7 @@ impl Core {
         }
     }
 
-    /// Like [`of`](Self::of), of a shape that is no user's own.
+    /// Like [`of`](Self::of), for a shape of parry's own.
     #[inline]
     pub fn of_typed(shape: TypedShape<'_>) -> Option<(Self, Real)> {
         // Each core is written once, into the answer: copies of merged branches cost as much as a support.
@@ -82,7 +82,7 @@ impl Core {
         }
     }
 
-    /// Whether its surface is curved, so that it is no polytope.
+    /// Whether the surface is curved, so that the core is no polytope.
     pub fn is_curved(&self) -> bool {
         matches!(self, Self::Cylinder(_) | Self::Cone(_))
     }

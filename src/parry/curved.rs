@@ -37,7 +37,7 @@ fn update_curved(
     update: &mut CurvedUpdate<'_>,
 ) -> Result<(), Unsupported> {
     let [first, second] = order.to_kernel(shapes);
-    // Each on its own: as parts of a pair they would be copied.
+    // One by one: as parts of a pair they would be copied.
     let first = Core::of(first);
     let second = Core::of(second);
     let (Some((first, border_1)), Some((second, border_2))) = (&first, &second) else {
@@ -55,7 +55,7 @@ fn update_curved(
     }
 }
 
-/// What is left to do once the types of both cores are known.
+/// The rest of an update, for cores whose types are known.
 struct PairUpdate<'u, 'a> {
     border_radii: [f64; 2],
     order: PairOrder,

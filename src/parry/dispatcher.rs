@@ -22,10 +22,10 @@ use crate::stats::{SharedStats, Stats};
 /// A query dispatcher that answers pairs with a convex hull, a cylinder or a cone itself and passes every
 /// other pair on to parry's own. It also finds the parts of compounds that meet, whatever they are.
 ///
-/// Give it to `NarrowPhase::with_query_dispatcher`, or to `set_query_dispatcher` of a world that
-/// runs already. Clones share their statistics.
+/// Pass it to `NarrowPhase::with_query_dispatcher`, or to `set_query_dispatcher` of a running world. Clones
+/// share their statistics.
 ///
-/// Whatever is not ours goes to the fallback `F`, parry's dispatcher unless you give another one with
+/// All other pairs go to the fallback `F`: parry's dispatcher, or another one given to
 /// [`with_fallback`](Self::with_fallback).
 #[derive(Clone, Debug)]
 pub struct IsaGjkDispatcher<F = DefaultQueryDispatcher> {
@@ -42,18 +42,18 @@ impl Default for IsaGjkDispatcher {
 }
 
 impl<F> IsaGjkDispatcher<F> {
-    /// A dispatcher that leaves to `fallback` what it does not answer itself: a dispatcher of your own,
-    /// or parry's `QueryDispatcherChain` of several. [`Stats::left_to_fallback`] counts pairs that it gets
-    /// although they have a hull.
+    /// A dispatcher that passes all pairs that it does not answer itself to `fallback`: a dispatcher of your
+    /// own, or several in parry's `QueryDispatcherChain`. [`Stats::left_to_fallback`] counts the pairs with a
+    /// hull among them.
     ///
-    /// The fallback gets whole pairs, and the parts of those composite shapes that we take apart.
+    /// The fallback gets whole pairs, and parts of the composite shapes that this dispatcher takes apart.
     ///
     /// ```
     /// use isa_gjk::IsaGjkDispatcher;
     /// use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
     /// use rapier3d::prelude::*;
     ///
-    /// // Yours is asked first about what we leave, and parry's last.
+    /// // Your dispatcher is tried first, and parry's last.
     /// let yours = DefaultQueryDispatcher;
     /// let dispatcher = IsaGjkDispatcher::with_fallback(yours.chain(DefaultQueryDispatcher));
     /// let narrow_phase = NarrowPhase::with_query_dispatcher(dispatcher);
@@ -112,12 +112,12 @@ impl<F> IsaGjkDispatcher<F> {
         self.stats.read()
     }
 
-    /// Runs `step`, in which no collider's shape is changed, replaced or dropped: then a plain hull is
-    /// proved to be the prepared one in its first pair only, not in each.
+    /// Runs `step`, during which you promise not to change, replace or drop the shape of any collider. Then
+    /// each plain hull is verified in its first pair only, not in every pair.
     ///
-    /// A step of a world is such a thing. The promise is for all shapes that the contacts of this
-    /// dispatcher and its clones are asked about meanwhile, in any thread; where it does not hold,
-    /// contacts may be those of the shape before. `HullShape`s need no such promise.
+    /// The step of a world keeps this promise. It covers all shapes whose contacts this dispatcher and its
+    /// clones update meanwhile, in any thread. If it is broken, contacts may be those of the earlier shape.
+    /// `HullShape`s need no such promise.
     ///
     /// ```
     /// use isa_gjk::IsaGjkDispatcher;
@@ -134,12 +134,12 @@ impl<F> IsaGjkDispatcher<F> {
         self.epochs.run(step)
     }
 
-    /// Drops what all dispatchers have prepared of plain hulls, and the memory that queries work in: in
-    /// this thread now, in others before their next query.
+    /// Drops everything that dispatchers have prepared for plain hulls, and the memory that queries work in:
+    /// in this thread now, in others before their next query.
     ///
-    /// Hulls that no longer exist are also dropped without it, but not at once: a thread keeps 32 MiB of them.
-    /// Call it when a level is over. It changes no answer; a hull that still exists is prepared again when it
-    /// is next needed.
+    /// Prepared hulls whose shapes are gone are also dropped without this call, but later: a thread keeps up
+    /// to 32 MiB of them. Call it at the end of a level. It changes no answer. A hull that still exists is
+    /// prepared again when it is next needed.
     ///
     /// ```
     /// use isa_gjk::IsaGjkDispatcher;
@@ -209,7 +209,7 @@ where
     ) -> Result<(), Unsupported> {
         let operands = map_pair([g1, g2], Operand::new);
         let constraints = [normal_constraints1, normal_constraints2].map(Constraints::given);
-        // Whoever takes shapes apart may make parts that do not outlive their pair.
+        // The caller may make parts of shapes that do not outlive their pair.
         let updater = self.updater(Epoch::of_pair());
         updater.update(pos12, &operands, &constraints, prediction, manifold)
     }

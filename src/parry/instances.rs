@@ -1,8 +1,8 @@
-//! What the update of a manifold needs of each pair of a hull and a polytope, compiled once.
+//! The functions that the update of a manifold calls for each pair of a hull and a polytope, compiled once.
 //!
-//! The update is generic over the data that the solver keeps in manifolds, so every program that steps a world
-//! compiles it. With generic functions it would compile what they call as well: most of this crate. The functions
-//! here belong to one pair of shapes each, and are compiled with the crate.
+//! The update is generic over the data that the solver keeps in manifolds, so every program that steps a
+//! world compiles it. If it called generic functions, the program would compile these as well, which are most
+//! of this crate. Each function here is for one pair of shapes, and is compiled with the crate.
 
 use glam::{DVec3, Vec3};
 
@@ -13,8 +13,8 @@ use crate::primitive::{Ball, CuboidPolytope, Segment, TrianglePolytope};
 use crate::query::{Feature, FlushFaces, Found, Full, Proximity, Query, Start, Strategy, Verdict};
 use crate::support::{Cso, CsoVertex, Polytope};
 
-/// A polytope that hulls meet. Its functions are those of the same name with a hull as the first shape. (Default
-/// bodies would be generic again.)
+/// A polytope that hulls meet. Each function is the generic one of the same name, with a hull as the first
+/// shape. (Default bodies would be generic again.)
 pub(crate) trait HullPartner: Polytope + Sized {
     fn start_from_features(
         query: &mut Query<'_, '_, Hull, Self>,

@@ -1,4 +1,4 @@
-//! The shapes of a pair, and where their prepared hulls are.
+//! The shapes of a pair, and the places of their prepared hulls.
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
@@ -54,7 +54,7 @@ enum HullSource<'a> {
 }
 
 impl<'a> HullSource<'a> {
-    /// This goes by the concrete type: the typed shape of a user's own shape may only be similar.
+    /// This checks the concrete type: a user's own shape may return a typed shape that is only similar.
     #[inline]
     fn of(shape: &'a dyn Shape) -> Option<Self> {
         if let Some(hull) = shape.as_shape() {
@@ -106,7 +106,7 @@ impl<'a> Operand<'a> {
         }
     }
 
-    /// Whether it may consist of parts. For most shapes this is quickly ruled out.
+    /// Whether the shape may have parts. Most shapes are ruled out quickly.
     #[inline]
     pub fn may_be_composite(&self) -> bool {
         use ShapeType::{Compound, Custom, HeightField, Polyline, TriMesh, Voxels};
@@ -135,7 +135,7 @@ impl<'a> Operand<'a> {
         })
     }
 
-    /// The hull, if the shape is one. It is prepared if it is new.
+    /// The hull, if the shape is one. A new hull is prepared.
     #[inline(always)]
     pub fn prepare(&self, cache: &mut HullCache, epoch: Epoch) -> Option<HullHandle<'a>> {
         Some(match self.hull? {

@@ -16,7 +16,8 @@ pub(crate) enum PairOrder {
 impl PairOrder {
     pub const BOTH: [Self; 2] = [Self::Given, Self::Reversed];
 
-    /// The order in which a shape of a kind comes first, by which of the caller's shapes are of that kind.
+    /// The order in which a shape of some kind comes first. The flags tell which of the caller's shapes are
+    /// of that kind.
     #[inline]
     pub fn with_first(is_of_kind: [bool; 2]) -> Option<Self> {
         match is_of_kind {

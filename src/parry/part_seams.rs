@@ -1,7 +1,8 @@
-//! Where the surface of a compound's part is not that of the compound, because another part covers it.
+//! Regions of a part's surface that are not on the surface of the compound, because another part covers them.
 //!
-//! Parry's pseudo-normals leave out the faces that two parts share as a whole. Parts of most
-//! decompositions touch, or overlap a little, on shares of their faces: that depends on the place.
+//! Parry's pseudo-normals leave out faces that two parts share completely. In most decompositions, parts
+//! share only regions of their faces, or overlap slightly. Then it depends on the place whether a face is
+//! covered.
 
 use glam::Vec3;
 use parry3d::bounding_volume::Aabb;
@@ -31,9 +32,9 @@ impl<'a> PartSeams<'a> {
         })
     }
 
-    /// Whether a normal is out of a cut, where another part goes on. Such a normal is perpendicular to outer
-    /// faces or leans a little towards any of them. How it leans says nothing about the surface: the
-    /// overlap does.
+    /// Whether a normal points out of a cut, beyond which another part continues. Such a normal is
+    /// perpendicular to outer faces or tilted slightly towards any of them. The tilt says nothing about the
+    /// surface; the overlap does.
     pub fn is_cut(self, normal: Vec3) -> bool {
         let Some(projected) = self.normals.project_local_normal(normal) else {
             return false;
@@ -42,9 +43,9 @@ impl<'a> PartSeams<'a> {
         !is_outwards || !projected.abs_diff_eq(normal, UNCORRECTED)
     }
 
-    /// Whether other parts cover contacts of this part, which is `shape`, at places on its surface: all of
-    /// them along the normal of a face, the first along any other normal. That has been found at a corner or
-    /// an edge, and only the first contact is sure to lie there.
+    /// Whether other parts cover the contacts of this part, `shape`. Along the normal of a face, this is
+    /// about all contacts. Any other normal was found at a corner or an edge, where only the first contact
+    /// certainly lies, so it is about that one.
     pub fn are_covered(
         self,
         shape: &impl Support,
@@ -72,7 +73,7 @@ impl<'a> PartSeams<'a> {
         self.normals.boundary_faces.iter().map(|cone| cone.face)
     }
 
-    /// Whether another part is beyond a face.
+    /// Whether another part continues beyond a face.
     fn goes_on(self, shape: &impl Support, place: Vec3, face: Vec3) -> bool {
         let inwards = (shape.center().as_vec3() - place) * SEAM_INSET as f32;
         let beyond = place + inwards + face * (SEAM_STEP * shape.radius()) as f32;

@@ -1,9 +1,9 @@
-//! What parry computes for the seams of a flagged compound, where parry does not.
+//! Pseudo-normals for the seams of compounds, where parry computes none.
 //!
-//! Parry computes it when the compound is made, for parts that it can downcast. A `HullShape` is none of
-//! these, and neither is a part of a compound that was loaded from a save. So it is computed here for a
-//! copy of the compound with plain hulls, and kept per thread, by the compound's address. The parts
-//! are compared at each use: what is kept is a pure function of the shapes.
+//! Parry computes them when a compound is made, for parts that it can downcast. It cannot downcast a
+//! `HullShape`, and computes none for a loaded compound. So they are computed here for a copy of the compound
+//! with plain hulls, and stored per thread, by the compound's address. Each use compares the parts: the cache
+//! is a pure function of the shapes.
 
 use std::sync::Arc;
 
@@ -13,14 +13,14 @@ use parry3d::shape::{Compound, CompoundPseudoNormals, SharedShape};
 use crate::parry::hull_shape::HullShape;
 use crate::parry::int_hash::IntMap;
 
-/// The pseudo-normals of each part that has some.
+/// The pseudo-normals of each part that has any.
 pub(crate) type PartNormals = Arc<[Option<CompoundPseudoNormals>]>;
 
 /// The pseudo-normals of a thread's compounds.
 #[derive(Default)]
 pub(crate) struct SeamsCache {
     known: IntMap<usize, Known>,
-    /// Beyond this number, those that are not in use are dropped.
+    /// With more compounds than this, unused ones are dropped.
     room: usize,
 }
 
@@ -30,7 +30,7 @@ struct Known {
     is_used: bool,
 }
 
-/// As many compounds may have seams without anything being dropped.
+/// Up to this number of compounds, nothing is dropped.
 const LEAST_ROOM: usize = 64;
 
 impl SeamsCache {
@@ -73,7 +73,7 @@ impl Known {
         }
     }
 
-    /// Whether the compound has the same parts. They are held here, so nobody has changed them.
+    /// Whether the compound has the same parts. The cache holds references to them, so they cannot have changed.
     fn is_of(&self, compound: &Compound) -> bool {
         let mut both = self.parts.iter().zip(compound.shapes());
         self.parts.len() == compound.shapes().len()

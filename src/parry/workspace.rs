@@ -36,8 +36,8 @@ pub(crate) fn trim() {
 }
 
 impl ThreadWorkspace {
-    /// Runs `work` on this thread's workspace, which is taken out meanwhile. A query within a query (from a
-    /// user's `NormalConstraints`), or while the thread ends, gets a new one.
+    /// Takes out this thread's workspace, runs `work` on it, and puts it back. A query within a query (from a
+    /// user's `NormalConstraints`), or one made while the thread ends, gets a new workspace.
     // perf: in a call the work would go through memory, which pairs that are apart notice.
     #[inline(always)]
     pub fn with<T>(work: impl FnOnce(&mut Self) -> T) -> T {

@@ -2,7 +2,8 @@
 
 use glam::DVec3;
 
-/// Lower and upper bounds on how far two shapes are apart, or how deep they overlap, with proofs of both.
+/// Lower and upper bounds of the distance between two shapes, or of their depth if they overlap, with proofs
+/// of both.
 ///
 /// The *signed distance* is the distance of shapes that are apart, and minus the least translation that
 /// separates shapes that overlap. It is between `lower` and `upper`. Everything is in frame 1, that of the

@@ -1,5 +1,5 @@
-//! Features: parts of a polytope's boundary. Their kinds are told apart here; the stages of a query work with
-//! their vertices and faces.
+//! Features: parts of a polytope's boundary. Kinds of features are distinguished here; the stages of a query
+//! work with their vertices and faces.
 
 use crate::support::{Cso, CsoVertex, EdgeId, FaceId, Polytope, VertexId};
 use glam::DVec3;
@@ -21,7 +21,7 @@ pub(super) const VERTEX: u32 = 0b01 << 30;
 const EDGE: u32 = 0b10 << 30;
 pub(super) const FACE: u32 = 0b11 << 30;
 
-/// Of a face with more corners, some are enough.
+/// If a face has more corners, this many suffice.
 pub(super) const CORNERS: usize = 4;
 
 impl Feature {

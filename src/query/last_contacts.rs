@@ -1,21 +1,21 @@
-//! The contacts of the previous frame, where the shapes are by now.
+//! The contacts of the previous frame, at the present poses.
 
 use glam::DVec3;
 
 use crate::pose::RelativePose;
 use crate::simd::{DVec3x4, LANES, f64x4, sum};
 
-/// Four contacts, some of which may be there twice. In frame 1.
+/// Four contacts in frame 1. If there were fewer, some are repeated.
 #[derive(Clone, Copy)]
 pub(crate) struct LastContacts {
-    /// Their points on shape 1.
+    /// The points on shape 1.
     on_1: DVec3x4,
-    /// From there to their points on shape 2.
+    /// The vectors from there to the points on shape 2.
     between: DVec3x4,
 }
 
 impl LastContacts {
-    /// From the points on each shape in its own frame.
+    /// Takes the points on each shape in its own frame.
     #[inline(always)]
     pub fn new(on_1: DVec3x4, on_2: DVec3x4, pose: &RelativePose) -> Self {
         Self {
@@ -24,33 +24,34 @@ impl LastContacts {
         }
     }
 
-    /// Their distances along a normal.
+    /// The distances along a normal.
     #[inline(always)]
     pub fn distances(&self, normal: DVec3) -> f64x4 {
         self.between.dot(normal)
     }
 
-    /// Whether the two points of each are at most this far apart across a normal.
+    /// Whether the two points of each contact are at most `drift` apart, perpendicular to a normal.
     #[inline(always)]
     pub fn are_within(&self, normal: DVec3, drift: f64) -> bool {
         let distances = self.distances(normal);
         let squared = self.between.length_squared() - distances * distances;
-        // A drift that is not a number is too far.
+        // A drift that is NaN counts as too far.
         squared.simd_le(f64x4::splat(drift * drift)).all()
     }
 
-    /// The one that is deepest along a normal.
+    /// The contact that is deepest along a normal.
     #[inline]
     pub fn deepest(&self, normal: DVec3) -> usize {
         first_least(self.distances(normal).to_array())
     }
 
-    /// In the middle of them all, on shape 1.
+    /// The mean of the points on shape 1.
     pub fn middle(&self) -> DVec3 {
         self.on_1.sum() / LANES as f64
     }
 
-    /// In the middle of those that are deepest along a normal up to `tie`, on shape 1.
+    /// A mean of the points on shape 1 in which the deepest contacts along a normal, up to `tie`, have most
+    /// of the weight.
     pub fn middle_of_deepest(&self, normal: DVec3, tie: f64) -> DVec3 {
         let distances = self.distances(normal);
         let array = distances.to_array();
@@ -60,7 +61,7 @@ impl LastContacts {
     }
 }
 
-/// The first of those that are least.
+/// The index of the least value; of equal ones, the first.
 #[inline]
 pub(crate) fn first_least(values: [f64; LANES]) -> usize {
     let mut least = 0;

@@ -15,7 +15,7 @@ use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Polytope, Support};
 use crate::tolerance::{DEPTH_GAP, GJK_GAP_OF_SIZE, WITNESS_GAP};
 
-/// The answer for a depth. Each witness point lies on its own shape.
+/// The answer with a known depth. Each witness point lies on its own shape.
 pub(super) fn of_depth<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     depth: &Penetration,
@@ -56,9 +56,9 @@ pub(super) fn of_depth<A: Polytope, B: Polytope>(
     }
 }
 
-/// The points that are nearest once the shapes are moved apart: by `through`, which takes them out of each
-/// other along the `normal`, and a little farther. GJK starts from the vertices that `start` finds, and stops
-/// at a `gap` between its bounds. `on_2` is where the point is before it is moved.
+/// The nearest points after the shapes are moved apart along the `normal`: by `through`, which ends the
+/// overlap, and a little farther. GJK starts from the vertices that `start` finds, and stops at a `gap`
+/// between its bounds. `on_2` is the point before that motion.
 pub(crate) fn moved_apart<A: Support, B: Support, const N: usize>(
     cso: &Cso<'_, A, B>,
     through: DVec3,

@@ -1,4 +1,4 @@
-//! What corrects normals at the seams of a compound's parts.
+//! Corrections of normals at the seams between a compound's parts.
 
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Pose;
@@ -18,7 +18,7 @@ pub(super) struct Seams<'a> {
 }
 
 impl<'a> Seams<'a> {
-    /// For the parts of a compound in a box.
+    /// The seams of the parts that meet a box.
     pub fn near(compound: &'a Compound, aabb: &Aabb) -> Self {
         let is_left_out = |part: u32| {
             compound.part_normal_constraints(part).is_none()
@@ -33,7 +33,7 @@ impl<'a> Seams<'a> {
         }
     }
 
-    /// Of the part at `pos`.
+    /// The corrections for the part at `pos`.
     pub fn of_part<'s>(&'s self, id: u32, pos: &'s Pose) -> Constraints<'s> {
         let compound = self.compound;
         let normals = match &self.computed {
@@ -52,7 +52,7 @@ impl<'a> Seams<'a> {
     }
 }
 
-/// The hull that parry can take for one, if the part is a hull without a rounded border.
+/// The polyhedron of a part that is a hull without a rounded border, for parry's routines.
 fn polyhedron(part: &SharedShape) -> Option<&ConvexPolyhedron> {
     let prepared = || part.as_shape().map(HullShape::polyhedron);
     part.as_shape().or_else(prepared)

@@ -1,8 +1,8 @@
 //! The manifolds of a pair with parts: one for each two parts that may meet.
 //!
-//! They stay where they are, and are found by the parts that they name. The workspace is empty: rapier
-//! requires one for pairs with many manifolds, and drops it when a shape changes. If the pair comes back to
-//! parry's routines, they see that the workspace is not theirs, and start over.
+//! Manifolds stay where they are, and are found by the parts whose numbers they store. The workspace is
+//! empty: rapier requires one for pairs with many manifolds, and drops it when a shape changes. If the pair
+//! returns to parry's routines, they find a workspace that is not theirs, and start over.
 
 use parry3d::bounding_volume::{Aabb, BoundingVolume};
 use parry3d::math::{Pose, Real};
@@ -42,7 +42,8 @@ pub(crate) struct SubManifolds<'a, M, C, F> {
     updater: Updater<'a, F>,
     pub prediction: Real,
     manifolds: &'a mut Vec<ContactManifold<M, C>>,
-    /// How many of them are of this frame. The manifolds of parts that no longer meet come after these.
+    /// The number of manifolds updated in this frame, which come first. The others belong to parts that may
+    /// no longer meet.
     done: usize,
     /// How many manifolds have been examined in searches.
     searched: usize,

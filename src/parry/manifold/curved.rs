@@ -131,7 +131,7 @@ impl<A: Body, B: Body> Near<'_, '_, A, B> {
         }
     }
 
-    /// Leaves the contacts where they are, if that is right, or chooses new ones. Returns whether they stayed.
+    /// Keeps the contacts where they are, or chooses new ones. Returns whether they stayed.
     fn update(&self, manifold: &mut dyn CurvedManifold, patch: &mut Patch) -> bool {
         let near = self.proximity();
         let normals = Normals::of(&near, self.cso.pose);
@@ -171,7 +171,7 @@ impl<A: Body, B: Body> Near<'_, '_, A, B> {
         } else if let Some(contacts) = self.along(corrected, patch) {
             manifold.set_contacts(self.order, corrected, &contacts);
         } else if self.least < 0.0 {
-            // What overlaps must be pushed out, if not along the corrected normal.
+            // Overlapping shapes must be pushed apart, even if not along the corrected normal.
             patch.find(self.cso, self.normal, self.border_radii);
             manifold.set_contacts(self.order, normals.rounded, &self.contacts(patch));
         } else {
@@ -179,13 +179,13 @@ impl<A: Body, B: Body> Near<'_, '_, A, B> {
         }
     }
 
-    /// Leaves a place to start from, and no contact.
+    /// Leaves no contact, but a place for the next query to start from.
     fn set_axis(&self, manifold: &mut dyn CurvedManifold) {
         let frame = AxisFrame::of(self.cso);
         manifold.set_axis(self.order, frame, self.normal, [VertexId::default(); 2]);
     }
 
-    /// The contacts along a corrected normal. The depth that the query found is along another one.
+    /// The contacts along a corrected normal, whose depth is not the one that the query found.
     fn along(&self, corrected: [Vec3; 2], patch: &mut Patch) -> Option<Contacts> {
         let normal = corrected[0].as_dvec3().normalize();
         patch.find(self.cso, normal, self.border_radii);

@@ -1,4 +1,4 @@
-//! What the update of a curved pair needs of its manifold, whatever data the solver keeps there.
+//! The interface of a manifold to the update of a curved pair, whatever data the solver keeps in it.
 
 use glam::{DVec3, Vec3};
 use parry3d::query::ContactManifold;
@@ -12,13 +12,12 @@ use crate::pose::RelativePose;
 use crate::query::{LastContacts, PairMemory};
 use crate::support::VertexId;
 
-/// A manifold of any solver, in the kernels' order. The data type is behind these functions, so that the update of
-/// each pair is compiled once, with this crate, and not again in every program that steps a world.
+/// A manifold of any solver, in the kernels' order. It hides the type of the solver's data, so that updates
+/// are compiled once, with this crate, and not in every program that steps a world.
 pub(super) trait CurvedManifold {
     fn last_contacts(&mut self, order: PairOrder, pose: &RelativePose) -> Option<LastContacts>;
 
-    /// What is remembered of the pair. With `borders` around them, the cores may be apart although the shapes
-    /// overlap.
+    /// The memory of the pair. The cores may be apart although the shapes, with their `borders`, overlap.
     fn hint(&mut self, order: PairOrder, frame: AxisFrame<'_>, borders: f64) -> Hint;
 
     fn forget(&mut self);
@@ -33,7 +32,7 @@ pub(super) trait CurvedManifold {
 
     fn set_contacts(&mut self, order: PairOrder, normals: [Vec3; 2], contacts: &Contacts);
 
-    /// Leaves the contacts where they are, if that is right.
+    /// Keeps the contacts where they are, if the shapes hardly moved.
     fn keep_places(
         &mut self,
         order: PairOrder,
@@ -95,7 +94,7 @@ impl<M, C: Default + Copy> CurvedManifold for ContactManifold<M, C> {
     }
 }
 
-/// A manifold of which no axis is read or written.
+/// A manifold whose axis is neither read nor written.
 fn kernel_manifold<M, C>(
     manifold: &mut ContactManifold<M, C>,
     order: PairOrder,

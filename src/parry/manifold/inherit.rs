@@ -132,7 +132,7 @@ impl FeatureKeys {
         Self(contact_keys(features))
     }
 
-    /// A bit for each that is the same as one of the others.
+    /// A bit for each key that equals one of the others.
     #[inline(always)]
     fn same(&self, others: &Self, one: usize) -> u32 {
         let [a, b] = map_pair([0, 1], |side| {
@@ -154,10 +154,10 @@ impl PartialEq for FeatureKeys {
 /// Index meaning "no old point matched".
 const NONE: usize = MAX_POINTS;
 
-/// For each new contact, the old contact whose data it inherits: the one between the same features. A contact
-/// without such a match inherits from the nearest old contact that is left, however far it is: an impulse in
-/// a wrong place of the patch is a better start for the solver than a body that rests on three contacts of
-/// four. (From the manifold of another dispatcher, at most as many points as ours have pass on their data.)
+/// For each new contact, the old contact whose data it inherits: the one between the same features. Without
+/// such a match it is the nearest old contact that is left, however far away: for the solver, an impulse in
+/// the wrong place of the patch is a better start than a body that rests on three contacts of four.
+/// (Manifolds of other dispatchers may have more points than ours; the others pass on nothing.)
 fn match_old_points<C>(
     old: &[TrackedContact<C>],
     old_ids: &FeatureKeys,

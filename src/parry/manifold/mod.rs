@@ -41,7 +41,7 @@ pub(crate) struct UpdateManifold<'a, M, C> {
 }
 
 impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
-    /// The manifold is up to date, unless the pair is not finite.
+    /// Fails if the pair is not finite.
     type Answer = ();
 
     // perf: in a call the pair would go through memory, which small queries notice.
@@ -117,7 +117,7 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
         }
     }
 
-    /// Runs the query, and keeps the proof if the shapes are still apart as the manifold says.
+    /// Runs the query. If the shapes are still apart along the manifold's axis, stores the proof.
     #[inline]
     fn query<B: HullPartner>(
         &mut self,
@@ -160,7 +160,7 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
         Ok(stage)
     }
 
-    /// What a proof that two hulls are apart is known by, if the manifold says that they are.
+    /// The key of a proof that two hulls are apart, if the manifold has an axis that separates them.
     #[inline]
     fn apart_pair<B: Support>(&self, pair: &Pair<'_, B>) -> Option<ApartPair<'a>> {
         let is_empty = self.manifold.points.is_empty();
@@ -173,7 +173,7 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
     }
 }
 
-/// The address of the manifold. Mostly, it is the same in the next frame.
+/// The address of the manifold, which is usually the same in the next frame.
 #[inline]
 fn key_of<T>(manifold: &T) -> u64 {
     (&raw const *manifold).addr() as u64

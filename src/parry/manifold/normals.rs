@@ -1,4 +1,4 @@
-//! The contact normal of a pair as both shapes see it.
+//! The contact normal in the frames of both shapes.
 
 use glam::{DVec3, Vec3};
 
@@ -6,7 +6,7 @@ use crate::map_pair::map_pair;
 use crate::pose::RelativePose;
 use crate::query::Proximity;
 
-/// Unit normals out of both shapes, each in its own frame, in the kernels' order.
+/// Unit normals that point out of both shapes, each in the frame of its shape, in the kernels' order.
 pub(super) struct Normals {
     pub exact: [DVec3; 2],
     /// As a manifold has them.

@@ -49,7 +49,8 @@ impl<B: HullPartner> UpdateContacts for PolytopeContacts<'_, '_, B> {
     ) -> bool {
         let normals = Normals::of(near, self.cso.pose);
         if !matches!(self.constraints, [Constraints::None, Constraints::None]) {
-            // Only parts of meshes and compounds have some. (A copy: that of other pairs stays in registers.)
+            // Only parts of meshes and compounds have constraints. The copy keeps the answer of other pairs
+            // in registers.
             let contacts = PolytopeContacts {
                 scratch: &mut *self.scratch,
                 ..*self
@@ -98,7 +99,7 @@ impl<B: HullPartner> PolytopeContacts<'_, '_, B> {
         let contacts = contacts.and_then(|contacts| self.uncovered(&pair, near, contacts));
         match contacts {
             Some((normals, contacts)) => manifold.set_contacts(normals, &contacts),
-            // Discarded: there is no contact, but there is a place to start from.
+            // There is no contact, but the next query has a place to start from.
             None => manifold.set_axis(near.normal, query::vertices(cso, near.features)),
         }
         false
@@ -117,7 +118,7 @@ impl<B: HullPartner> PolytopeContacts<'_, '_, B> {
         corrected: &Corrected,
     ) -> Option<([Vec3; 2], Contacts)> {
         self.along(pair, near, corrected)
-            // What overlaps must be pushed out, if not along the corrected normal.
+            // Overlapping shapes must be pushed apart, even if not along the corrected normal.
             .or_else(|| (near.signed_distance < 0.0).then(|| self.along_normal(near, normals)))
     }
 
@@ -136,7 +137,7 @@ impl<B: HullPartner> PolytopeContacts<'_, '_, B> {
         Some((normals, contacts))
     }
 
-    /// The contacts, or others if they are all on a face that another part covers.
+    /// The contacts, or other ones if another part covers the face that they are all on.
     fn uncovered(
         &mut self,
         pair: &ConstrainedPair<'_, '_, Hull, B>,

@@ -45,7 +45,7 @@ impl<'a> AxisFrame<'a> {
         }
     }
 
-    /// How far a point of the other shape is, at most, from the point that its rotation leaves where it is.
+    /// The greatest distance of a point of the other shape from the centre of its rotation.
     pub fn lever<A: Support, B: Support>(self, cso: &Cso<'_, A, B>) -> f64 {
         match self {
             Self::First => cso.shape_2.center().length() + cso.shape_2.radius(),
@@ -97,7 +97,7 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
         }
     }
 
-    /// Of shapes whose borders are no longer to be taken off.
+    /// The same for shapes with their borders.
     pub fn with_borders(
         manifold: &'a mut ContactManifold<M, C>,
         order: PairOrder,
@@ -111,7 +111,7 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
         }
     }
 
-    /// What the previous frame left. Of its contacts that is remembered which is deepest by now.
+    /// The memory that the previous frame left. Of its contacts, the one that is deepest now counts.
     #[inline(always)]
     pub fn memory(&self, last: Option<&LastContacts>) -> PairMemory {
         let (manifold, order) = (&*self.manifold, self.order);
@@ -148,13 +148,13 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
         Some([unit(first)?, unit(second)?])
     }
 
-    /// The distance of the deepest contact, as it was.
+    /// The distance of the deepest contact in the previous frame.
     pub fn least_distance(&self) -> Option<f32> {
         deepest(&self.manifold.points).map(|contact| contact.dist)
     }
 
-    /// Clears the memory of a pair whose bounding spheres are apart: a start for the next query is not worth
-    /// a root and a division.
+    /// Clears the memory of a pair whose bounding spheres are apart. To store an axis would cost a root and a
+    /// division, which is more than it would save the next query.
     #[inline(always)]
     pub fn forget(&mut self) {
         self.manifold.points.clear();
@@ -177,7 +177,7 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
         self.manifold.local_n2 = Vec3::new(x, y, 0.0);
     }
 
-    /// Stores the contact normal in f32, outwards from both shapes in their own frames.
+    /// Stores the contact normals in f32, each outward from its shape and in its frame.
     #[inline(always)]
     pub fn set_normals(&mut self, normals: [Vec3; 2]) {
         [self.manifold.local_n1, self.manifold.local_n2] = self.order.to_caller(normals);
@@ -195,8 +195,7 @@ fn deepest<C>(contacts: &[TrackedContact<C>]) -> Option<&TrackedContact<C>> {
     Some(deepest)
 }
 
-/// The vector if it is a unit vector up to rounding. (Separations along it are then right up to the same
-/// relative rounding.)
+/// The vector, if it has unit length up to rounding. Separations along it then have the same relative error.
 #[inline]
 fn unit(v: Vec3) -> Option<DVec3> {
     let v = v.as_dvec3();
