@@ -52,23 +52,22 @@
 //!
 //! # Without a physics engine
 //!
-//! [`query`] works without one (poses are parry's):
+//! The dispatcher's queries are parry's traits, which need no world; [`query`] has two of its own:
 //!
 //! ```
-//! use isa_gjk::Hull;
-//! use isa_gjk::query::{Answer, Cost, Cso, EpaScratch, PairMemory, Query, RelativePose};
-//! use glam::Vec3;
-//! use parry3d::math::Pose;
+//! use isa_gjk::query::SeparationBounds;
+//! use isa_gjk::{HullShape, IsaGjkDispatcher};
+//! use parry3d::math::{Pose, Vector};
+//! use parry3d::query::QueryDispatcher;
 //!
-//! let hull = Hull::from_points(&[Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::Z])?;
-//! let pose = RelativePose::new(&Pose::translation(-1.5, 0.0, 0.0)).expect("a finite pose");
-//! let cso = Cso { shape_1: &hull, shape_2: &hull, pose: &pose };
-//! let (mut scratch, mut cost) = (EpaScratch::default(), Cost::default());
-//! let mut query = Query::new(&cso, f64::INFINITY, &mut scratch, &mut cost);
-//! let (answer, _stage) = query.run(&PairMemory::None).expect("finite solids");
-//! let Answer::Near(near) = answer else { unreachable!("nothing is beyond infinity") };
-//! assert!((near.signed_distance - 0.5).abs() < 1e-9);
-//! # Ok::<(), isa_gjk::HullError>(())
+//! let hull = HullShape::from_points(&[Vector::ZERO, Vector::X, Vector::Y, Vector::Z])?;
+//! let pos12 = Pose::translation(-1.5, 0.0, 0.0);
+//! let distance = IsaGjkDispatcher::default().distance(&pos12, &hull, &hull)?;
+//! assert!((distance - 0.5).abs() < 1e-6);
+//!
+//! let bounds = SeparationBounds::between(&hull, &hull, &pos12)?;
+//! assert!(bounds.lower <= 0.5 && 0.5 <= bounds.upper && bounds.upper - bounds.lower < 1e-9);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![deny(unsafe_code)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
@@ -132,6 +131,9 @@ pub mod internals {
     }
     pub mod primitive {
         pub use crate::primitive::*;
+    }
+    pub mod query {
+        pub use crate::query::types::*;
     }
     pub mod ray_cast {
         pub use crate::ray_cast::*;

@@ -107,6 +107,9 @@ pub(crate) const SMALL_TURN: f64 = 0.03;
 /// The longest step of Newton's method, as an angle: beyond it the slope at hand says little.
 pub(crate) const LONGEST_STEP: f64 = 0.5;
 
+/// Each step of Newton's method doubles the number of correct digits.
+pub(crate) const MAX_NEWTON_STEPS: usize = 5;
+
 /// A face whose fourth corner is no higher over the first three than this share of its length seems flat. Then
 /// flat sides are looked for first.
 pub(crate) const SEEMS_FLAT: f64 = 1e-5;

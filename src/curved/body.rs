@@ -3,8 +3,9 @@
 use glam::DVec3;
 
 use super::piece::{FlatSide, Piece};
+use crate::pose::RelativePose;
 use crate::stats::Cost;
-use crate::support::{Support, VertexId};
+use crate::support::{Cso, Support, VertexId};
 
 /// The condition that a part of a surface sets for its outward unit normals: `axis · normal = sine`. The
 /// normals of an edge are perpendicular to it. Those of the side of a cylinder or a cone have a fixed angle
@@ -63,4 +64,15 @@ pub trait Body: Support {
         border: f64,
         corners: &mut Vec<(DVec3, VertexId)>,
     ) -> Piece;
+}
+
+impl<'a, A: Body, B: Body> Cso<'a, A, B> {
+    /// The same shapes in the other order. `inverse` is the pose of shape 1 in frame 2.
+    pub(super) fn reversed(&self, inverse: &'a RelativePose) -> Cso<'a, B, A> {
+        Cso {
+            shape_1: self.shape_2,
+            shape_2: self.shape_1,
+            pose: inverse,
+        }
+    }
 }

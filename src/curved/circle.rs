@@ -6,11 +6,11 @@ use glam::DVec3;
 use super::body::{Body, Ruling};
 use super::curvature::Curvature;
 use super::piece::across;
-use super::stationary::{MAX_NEWTON_STEPS, NormalSeparation};
+use super::separation::NormalSeparation;
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex};
 use crate::tolerance::SETTLED_ANGLE;
-use crate::tuning::LONGEST_STEP;
+use crate::tuning::{LONGEST_STEP, MAX_NEWTON_STEPS};
 
 /// The circle of the unit vectors that satisfy a ruling.
 #[derive(Clone, Copy)]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::body::{Body, CircularEdge};
-use super::stationary::NormalSeparation;
+use super::separation::NormalSeparation;
 use crate::support::Cso;
 use crate::tolerance::SAME_NORMAL;
 

@@ -32,6 +32,7 @@ mod rim_edge;
 mod round;
 mod search;
 mod seeds;
+mod separation;
 mod stationary;
 
 pub use body::{Body, CircularEdge, Ruling};

@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::body::{Body, CircularEdge};
-use super::stationary::NormalSeparation;
-use crate::support::Cso;
+use super::separation::NormalSeparation;
+use crate::support::{Cso, VertexId};
 use crate::tolerance::SAME_NORMAL;
 
 /// The point of shape 1 where a rim and an edge of overlapping shapes cross, if they prove that no direction
@@ -20,50 +20,22 @@ pub(super) fn proved_crossing<A: Body, B: Body>(
     if at.distance >= 0.0 {
         return None;
     }
-    let (sweep, on_1) = sweep_of_first(cso, at).or_else(|| sweep_of_second(cso, at))?;
+    let [on_1, on_2] = [at.extreme.on_1, at.extreme.on_2()];
+    let [id_1, id_2] = at.extreme.ids;
+    let (sweep, on_1) = match Sweep::of_first_rim(cso, at.normal, on_1, id_2) {
+        Some(sweep) => (sweep, on_1),
+        None => {
+            let inverse = cso.pose.inverse();
+            let reversed = cso.reversed(&inverse);
+            let outward_2 = -cso.pose.direction_to_2(at.normal);
+            let sweep = Sweep::of_first_rim(&reversed, outward_2, cso.pose.point_to_2(on_2), id_1)?;
+            (sweep, on_2 - at.normal * at.distance)
+        }
+    };
     sweep.contains_ball(-at.distance, tolerance).then_some(on_1)
 }
 
-/// A rim of the first shape and an edge of the second one, and their place on shape 1.
-fn sweep_of_first<A: Body, B: Body>(
-    cso: &Cso<'_, A, B>,
-    at: &NormalSeparation,
-) -> Option<(Sweep, DVec3)> {
-    let outward_2 = -cso.pose.direction_to_2(at.normal);
-    let rim = cso.shape_1.rim(at.normal)?;
-    let edge = cso.shape_2.edge(outward_2, at.extreme.ids[1])?;
-    let sweep = Sweep {
-        rim,
-        on_rim: at.extreme.on_1,
-        edge: edge.map(|p| cso.pose.point_to_1(p)),
-        normal: at.normal,
-    };
-    Some((sweep, at.extreme.on_1))
-}
-
-/// The same with the shapes' parts exchanged.
-fn sweep_of_second<A: Body, B: Body>(
-    cso: &Cso<'_, A, B>,
-    at: &NormalSeparation,
-) -> Option<(Sweep, DVec3)> {
-    let outward_2 = -cso.pose.direction_to_2(at.normal);
-    let rim = cso.shape_2.rim(outward_2)?;
-    let edge = cso.shape_1.edge(at.normal, at.extreme.ids[0])?;
-    let on_rim = at.extreme.on_2();
-    let sweep = Sweep {
-        rim: CircularEdge {
-            axis: cso.pose.direction_to_1(rim.axis),
-            center: cso.pose.point_to_1(rim.center),
-            ..rim
-        },
-        on_rim,
-        edge,
-        normal: -at.normal,
-    };
-    Some((sweep, on_rim - at.normal * at.distance))
-}
-
-/// A disc minus an edge.
+/// A disc minus an edge, in frame 1.
 struct Sweep {
     rim: CircularEdge,
     /// The extreme point of the rim.
@@ -74,6 +46,25 @@ struct Sweep {
 }
 
 impl Sweep {
+    /// The rim of the first shape and the edge of the second one that are extreme along a normal: at the point
+    /// `on_rim`, and at the vertex `vertex_2`.
+    fn of_first_rim<A: Body, B: Body>(
+        cso: &Cso<'_, A, B>,
+        normal: DVec3,
+        on_rim: DVec3,
+        vertex_2: VertexId,
+    ) -> Option<Self> {
+        let rim = cso.shape_1.rim(normal)?;
+        let outward_2 = -cso.pose.direction_to_2(normal);
+        let edge = cso.shape_2.edge(outward_2, vertex_2)?;
+        Some(Self {
+            rim,
+            on_rim,
+            edge: edge.map(|p| cso.pose.point_to_1(p)),
+            normal,
+        })
+    }
+
     fn contains_ball(&self, depth: f64, tolerance: f64) -> bool {
         let [from, to] = self.edge;
         let length = from.distance(to);

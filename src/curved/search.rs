@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::body::Body;
 use super::query::{CurvedAnswer, CurvedQuery, CurvedScratch, apart};
-use super::stationary::NormalSeparation;
+use super::separation::NormalSeparation;
 use crate::epa::{self, DepthSearch};
 use crate::gjk::{self, Outcome};
 use crate::query::{Start, moved_apart};

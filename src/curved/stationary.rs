@@ -6,43 +6,11 @@ use glam::{DVec2, DVec3};
 use super::body::{Body, Ruling};
 use super::circle::along_ruling;
 use super::curvature::Curvature;
+use super::separation::NormalSeparation;
 use crate::stats::Cost;
-use crate::support::{Cso, CsoVertex};
+use crate::support::Cso;
 use crate::tolerance::{PARALLEL_AXES, SETTLED_ANGLE};
-use crate::tuning::{LONGEST_STEP, SMALL_TURN};
-
-/// A normal, the extreme vertex of the difference along it, and the separation of the shapes along it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct NormalSeparation {
-    pub normal: DVec3,
-    pub extreme: CsoVertex,
-    pub distance: f64,
-}
-
-impl NormalSeparation {
-    /// The separation along a unit vector. Climbs start at the vertices of `near`, found along another one.
-    pub fn along<A: Body, B: Body>(
-        cso: &Cso<'_, A, B>,
-        normal: DVec3,
-        near: &CsoVertex,
-        cost: &mut Cost,
-    ) -> Self {
-        let extreme = cso.support(normal, near.ids, cost);
-        Self {
-            normal,
-            extreme,
-            distance: -normal.dot(extreme.w),
-        }
-    }
-
-    pub fn or(self, other: Self) -> Self {
-        if other.distance > self.distance {
-            other
-        } else {
-            self
-        }
-    }
-}
+use crate::tuning::{LONGEST_STEP, MAX_NEWTON_STEPS, SMALL_TURN};
 
 /// Of the flat sides whose normal is close to the one at hand, the normal with the greatest separation.
 pub(super) fn near_flat<A: Body, B: Body>(
@@ -151,9 +119,6 @@ pub(super) fn along_rulings<A: Body, B: Body>(
     }
     best
 }
-
-/// Newton's method doubles the number of correct digits in each step.
-pub(super) const MAX_NEWTON_STEPS: usize = 5;
 
 /// The normal close to the one at hand with the greatest separation, between vertices and rims, where no
 /// ruling restricts it. Found by Newton's method.

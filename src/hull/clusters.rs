@@ -1,18 +1,9 @@
 //! Face clusters: neighbouring faces that lie nearly in one plane, such as those of a scanned or triangulated
 //! flat end. Bodies rest on whole clusters, not on single faces.
 
-use std::cmp::Reverse;
-
-use glam::{DVec2, DVec3, Vec3};
-
-use super::faces::{FaceCorner, Faces, NO_EDGE};
-use super::graph::EdgeGraph;
+use super::graph::FaceCorner;
+use super::lists::Rows;
 use crate::support::FaceId;
-use crate::tolerance::CLUSTER_ANGLE_COS;
-
-/// A cluster has at most this many members, so that one contact never has to process thousands of faces. The
-/// rest of a larger flat region becomes another cluster.
-const MAX_MEMBERS: usize = 64;
 
 /// The cluster of each face, and the faces under the outline of each cluster.
 #[derive(Clone, Debug, Default)]
@@ -26,38 +17,6 @@ pub(super) struct FaceClusters {
 
 /// A face that is in no cluster. There are fewer clusters than faces, which are fewer than this.
 const NONE: u16 = u16::MAX;
-
-/// Lists, one after the other.
-#[derive(Clone, Debug)]
-struct Rows<T> {
-    items: Vec<T>,
-    ends: Vec<usize>,
-}
-
-impl<T> Default for Rows<T> {
-    fn default() -> Self {
-        Self {
-            items: Vec::new(),
-            ends: Vec::new(),
-        }
-    }
-}
-
-impl<T> Rows<T> {
-    fn push(&mut self, items: impl IntoIterator<Item = T>) {
-        self.items.extend(items);
-        self.ends.push(self.items.len());
-    }
-
-    fn row(&self, row: usize) -> &[T] {
-        let first = row.checked_sub(1).map_or(0, |before| self.ends[before]);
-        &self.items[first..self.ends[row]]
-    }
-
-    fn heap_bytes(&self) -> usize {
-        self.items.capacity() * size_of::<T>() + self.ends.capacity() * size_of::<usize>()
-    }
-}
 
 impl FaceClusters {
     /// The number of the cluster that contains `face`, and all faces under its outline.
@@ -78,198 +37,23 @@ impl FaceClusters {
             + self.outlines.heap_bytes()
     }
 
-    fn push(&mut self, cluster: &Cluster<'_>) {
-        let Cluster { faces, graph, .. } = cluster;
+    /// Adds a cluster of some of `faces` faces: its members, the other faces under its outline, and the corners
+    /// of that.
+    pub fn push(
+        &mut self,
+        faces: usize,
+        members: &[u16],
+        covered: Vec<u16>,
+        outline: impl IntoIterator<Item = FaceCorner>,
+    ) {
         if self.of_face.is_empty() {
-            self.of_face = vec![NONE; faces.len()].into();
+            self.of_face = vec![NONE; faces].into();
         }
-        let number = self.faces.ends.len() as u16;
-        for &face in &cluster.members {
+        let number = self.faces.len() as u16;
+        for &face in members {
             self.of_face[usize::from(face)] = number;
         }
-        let outline = cluster.outline();
-        let covered = cluster.covered_nonmembers(&outline);
-        self.faces
-            .push(cluster.members.iter().copied().chain(covered));
-        let ends = outline.iter().cycle().skip(1);
-        self.outlines
-            .push(outline.iter().zip(ends).map(|(&from, &to)| {
-                let slot = graph.edge_slot(from.into(), to.into());
-                FaceCorner {
-                    vertex: from,
-                    slot: slot.unwrap_or(NO_EDGE),
-                }
-            }));
+        self.faces.push(members.iter().copied().chain(covered));
+        self.outlines.push(outline);
     }
-}
-
-/// Grows clusters from the faces that are beside a face of about their direction, the largest first.
-pub(super) fn grow_clusters(points: &[Vec3], faces: &Faces, graph: &EdgeGraph) -> FaceClusters {
-    let mut clusters = FaceClusters::default();
-    let mut taken: Vec<bool> = (0..faces.len())
-        .map(|face| !faces.is_beside_like(FaceId::new(face)))
-        .collect();
-    for seed in seeds(points, faces) {
-        if taken[usize::from(seed)] || faces.normal(seed.into()) == DVec3::ZERO {
-            continue;
-        }
-        let mut cluster = Cluster::new(points, faces, graph, seed);
-        cluster.grow(&mut taken);
-        if cluster.members.len() > 1 {
-            clusters.push(&cluster);
-        }
-    }
-    clusters
-}
-
-/// The faces beside one of about their direction, the largest first.
-fn seeds(points: &[Vec3], faces: &Faces) -> impl Iterator<Item = u16> {
-    let seeds = (0..faces.len() as u16).filter(|&face| faces.is_beside_like(face.into()));
-    largest_first(seeds, |face| area(points, faces, face))
-}
-
-/// Items of these sizes, which are not negative, from the largest to the smallest.
-pub(super) fn largest_first<T: Copy + Ord>(
-    items: impl Iterator<Item = T>,
-    size: impl Fn(T) -> f64,
-) -> impl Iterator<Item = T> {
-    // The bits of non-negative numbers sort as the numbers do.
-    let mut items: Vec<_> = items
-        .map(|item| (Reverse(size(item).to_bits()), item))
-        .collect();
-    items.sort_unstable();
-    items.into_iter().map(|(_, item)| item)
-}
-
-/// Twice the area of a face.
-fn area(points: &[Vec3], faces: &Faces, face: u16) -> f64 {
-    let corners = faces.polygon(face.into());
-    let first = at_first(points, corners);
-    let at = |i: usize| points[usize::from(corners[i].vertex)].as_dvec3() - first;
-    let fan = (1..corners.len() - 1).map(|i| at(i).cross(at(i + 1)));
-    fan.sum::<DVec3>().length()
-}
-
-fn at_first(points: &[Vec3], corners: &[FaceCorner]) -> DVec3 {
-    points[usize::from(corners[0].vertex)].as_dvec3()
-}
-
-/// A cluster that grows.
-struct Cluster<'a> {
-    points: &'a [Vec3],
-    faces: &'a Faces,
-    graph: &'a EdgeGraph,
-    /// The plane of the face that it grows from.
-    normal: DVec3,
-    corner: DVec3,
-    members: Vec<u16>,
-}
-
-impl<'a> Cluster<'a> {
-    fn new(points: &'a [Vec3], faces: &'a Faces, graph: &'a EdgeGraph, seed: u16) -> Self {
-        Self {
-            points,
-            faces,
-            graph,
-            normal: faces.normal(seed.into()),
-            corner: at_first(points, faces.polygon(seed.into())),
-            members: vec![seed],
-        }
-    }
-
-    fn grow(&mut self, taken: &mut [bool]) {
-        taken[usize::from(self.members[0])] = true;
-        let mut next = 0;
-        while let Some(&member) = self.members.get(next) {
-            let polygon: FaceId = member.into();
-            for side in 0..self.faces.polygon(polygon).len() {
-                let Some(other) = self.face_beyond(member, side) else {
-                    continue;
-                };
-                let fits = self.members.len() < MAX_MEMBERS && !taken[usize::from(other)];
-                if fits && self.accepts(other.into()) {
-                    taken[usize::from(other)] = true;
-                    self.members.push(other);
-                }
-            }
-            next += 1;
-        }
-    }
-
-    /// The face beyond a side of a face.
-    fn face_beyond(&self, face: u16, side: usize) -> Option<u16> {
-        let edge = self.faces.edge(face.into(), side)?;
-        let [left, right] = self.graph.faces_of_edge(edge)?;
-        Some(if left == face { right } else { left })
-    }
-
-    fn way_to(&self, corner: &FaceCorner) -> DVec3 {
-        self.points[usize::from(corner.vertex)].as_dvec3() - self.corner
-    }
-
-    /// Whether a face and all of its corners, seen from the first face, lie within the cluster's angle. A
-    /// sliver has no plane and is judged by its corners alone.
-    fn accepts(&self, face: FaceId) -> bool {
-        let sine = (1.0 - CLUSTER_ANGLE_COS * CLUSTER_ANGLE_COS).sqrt();
-        let near = |corner: &FaceCorner| {
-            let way = self.way_to(corner);
-            self.normal.dot(way) >= -sine * way.length()
-        };
-        let other = self.faces.normal(face);
-        let aligned = other == DVec3::ZERO || other.dot(self.normal) >= CLUSTER_ANGLE_COS;
-        aligned && self.faces.polygon(face).iter().all(near)
-    }
-
-    fn corners(&self) -> impl Iterator<Item = &'a FaceCorner> {
-        let faces = self.faces;
-        let members = self.members.iter();
-        members.flat_map(move |&face| faces.polygon(face.into()))
-    }
-
-    /// The convex outline of the members seen against the normal, counter-clockwise (Andrew, *Another
-    /// efficient algorithm for convex hulls in two dimensions*, IPL 9(5), 1979).
-    fn outline(&self) -> Vec<u16> {
-        let u = self.normal.any_orthonormal_vector();
-        let v = self.normal.cross(u);
-        let place = |corner: &FaceCorner| {
-            let p = self.way_to(corner);
-            (DVec2::new(p.dot(u), p.dot(v)), corner.vertex)
-        };
-        let mut corners: Vec<(DVec2, u16)> = self.corners().map(place).collect();
-        corners
-            .sort_by(|(a, i), (b, j)| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(i.cmp(j)));
-        corners.dedup();
-        let mut outline = half_outline(corners.iter());
-        outline.extend(half_outline(corners.iter().rev()));
-        outline
-    }
-
-    /// The faces that are not members, but meet a vertex of a member inside the outline: they lie partly under
-    /// it where it cuts across a bay.
-    fn covered_nonmembers(&self, outline: &[u16]) -> Vec<u16> {
-        let inside = self
-            .corners()
-            .map(|c| c.vertex)
-            .filter(|v| !outline.contains(v));
-        let around = inside.flat_map(|vertex| self.graph.faces_around(vertex.into()).flatten());
-        let mut covered: Vec<u16> = around.filter(|face| !self.members.contains(face)).collect();
-        covered.sort_unstable();
-        covered.dedup();
-        covered
-    }
-}
-
-/// Half of an outline, from the first point up to the last, which is left out.
-fn half_outline<'a>(corners: impl Iterator<Item = &'a (DVec2, u16)>) -> Vec<u16> {
-    let mut chain: Vec<(DVec2, u16)> = Vec::new();
-    for &corner in corners {
-        while let [.., (a, _), (b, _)] = chain[..]
-            && (b - a).perp_dot(corner.0 - a) <= 0.0
-        {
-            chain.pop();
-        }
-        chain.push(corner);
-    }
-    chain.pop();
-    chain.into_iter().map(|(_, vertex)| vertex).collect()
 }

@@ -4,8 +4,8 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
 
-use super::clusters::{FaceClusters, grow_clusters};
-use super::graph::{EdgeGraph, pack_edge};
+use super::clusters::FaceClusters;
+use super::graph::{FaceCorner, NO_EDGE, pack_edge};
 use crate::support::{EdgeId, FaceId};
 
 /// The faces, and the clusters of some of them.
@@ -40,17 +40,6 @@ impl FaceRecord {
         (self.first & !BESIDE_LIKE) as usize
     }
 }
-
-/// A corner of a polygon.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct FaceCorner {
-    pub vertex: u16,
-    /// The slot of the edge that starts here: its id is made of this and of its lower vertex.
-    pub(super) slot: u16,
-}
-
-/// The slot of a side that is no edge, but cuts across faces.
-pub(super) const NO_EDGE: u16 = u16::MAX;
 
 impl Faces {
     pub fn len(&self) -> usize {
@@ -100,18 +89,17 @@ impl Faces {
         self.polygons[face.index()].first & BESIDE_LIKE != 0
     }
 
-    /// The cluster that a face belongs to: the id of its outline, and the faces under the outline.
+    /// The cluster that a face belongs to: the id of its outline, and the faces under the outline. `grow` finds
+    /// all clusters when the first of them is looked up.
     #[inline]
     pub fn cluster(
         &self,
         face: FaceId,
-        points: &[Vec3],
-        graph: &EdgeGraph,
+        grow: impl FnOnce() -> Box<FaceClusters>,
     ) -> Option<(FaceId, &[u16])> {
         if !self.is_beside_like(face) {
             return None;
         }
-        let grow = || Box::new(grow_clusters(points, self, graph));
         let (cluster, faces) = self.clusters.get_or_init(grow).containing(face)?;
         Some((FaceId::new(self.len() + cluster), faces))
     }

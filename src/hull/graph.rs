@@ -8,6 +8,17 @@ use crate::support::{EdgeId, VertexId};
 /// this vertex. With at most 2^15 vertices the id has 30 bits, as in parry's packed feature ids.
 const SLOT_BITS: u32 = 15;
 
+/// A corner of a polygon.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FaceCorner {
+    pub vertex: u16,
+    /// The slot of the edge that starts here: its id is made of this and of its lower vertex.
+    pub(super) slot: u16,
+}
+
+/// The slot of a side that is no edge, but cuts across faces.
+pub(super) const NO_EDGE: u16 = u16::MAX;
+
 /// The neighbours of each vertex.
 #[derive(Clone, Debug)]
 #[repr(C)]

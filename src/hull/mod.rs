@@ -3,10 +3,12 @@
 
 pub(crate) mod build;
 mod climb;
+mod cluster_growth;
 mod clusters;
 mod error;
 mod faces;
 mod graph;
+mod lists;
 mod scan;
 mod start_table;
 
@@ -18,6 +20,7 @@ use glam::{DVec3, Vec3};
 use crate::stats::Cost;
 use crate::support::{EdgeId, FaceId, FacePoints, Polytope, ShapeId, Support, VertexId};
 use climb::HillClimb;
+use cluster_growth::grow_clusters;
 use faces::Faces;
 use graph::EdgeGraph;
 use scan::Scan;
@@ -264,7 +267,8 @@ impl Polytope for Hull {
 
     #[inline]
     fn cluster(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
-        self.faces.cluster(face, &self.points, &self.graph)
+        let grow = || Box::new(grow_clusters(&self.points, &self.faces, &self.graph));
+        self.faces.cluster(face, grow)
     }
 
     #[inline]

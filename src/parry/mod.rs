@@ -21,4 +21,5 @@ pub mod recording;
 mod scene;
 mod seams_cache;
 mod update;
+mod visit;
 mod workspace;

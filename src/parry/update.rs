@@ -9,17 +9,17 @@ use crate::parry::curved::update_without_hull;
 use crate::parry::hull_cache::epoch::Epoch;
 use crate::parry::manifold::UpdateManifold;
 use crate::parry::operand::Operand;
-use crate::parry::pair;
 use crate::parry::recording::{PairView, Recorder, bare};
+use crate::parry::visit;
 use crate::stats::{Left, SharedStats};
 
-/// What the updates of one call have in common.
+/// What all updates of one call share.
 pub(crate) struct Updater<'a, F> {
     pub fallback: &'a F,
     pub stats: &'a SharedStats,
-    /// Who looks at each pair, if anybody does.
+    /// Checks each pair, if there is a recorder.
     pub recorder: Option<&'a Recorder>,
-    /// In which the shapes are unchanged.
+    /// The epoch in which the shapes do not change.
     pub epoch: Epoch,
 }
 
@@ -110,10 +110,10 @@ impl<F> Updater<'_, F> {
             stats: self.stats,
         };
         if has_hull {
-            if pair::visit_operands(operands, self.epoch, update).is_ok() {
+            if visit::operands(operands, self.epoch, update).is_ok() {
                 return Ok(());
             }
-            self.stats.record_left(pair::why_left(pos12, [g1, g2]));
+            self.stats.record_left(visit::why_left(pos12, [g1, g2]));
         } else if update_without_hull([g1, g2], update).is_ok() {
             return Ok(());
         } else {

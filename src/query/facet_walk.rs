@@ -5,12 +5,12 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 
 use super::certificate::flush::FlushFaces;
-use super::certificate::verdict::{FacetEdge, Verdict};
 use super::certificate::{facet, vertex_edge};
 use super::feature::{self, Feature};
-use super::pipeline::{Found, Start};
-use super::types::Answer;
-use super::{Query, gauss_map};
+use super::gauss_map;
+use super::pipeline::Found;
+use super::types::{Answer, Query, Start};
+use super::verdict::{FacetEdge, Verdict};
 use crate::map_pair::map_pair;
 use crate::stats::Stage;
 use crate::support::{Polytope, VertexId};

@@ -7,8 +7,8 @@
 
 use glam::DVec3;
 
-use super::certificate::verdict::FacetEdge;
 use super::feature::Feature;
+use super::verdict::FacetEdge;
 use crate::arg_max::{ArgMax, ArgMax4};
 use crate::map_pair::map_pair;
 use crate::pose::RelativePose;
@@ -37,7 +37,7 @@ pub(super) fn adjacent_facet<A: Polytope, B: Polytope>(
         edge: [from_2, to_2],
         vertex: from_1,
     };
-    // As shape 2 sees it: an outward direction of shape 1 points into shape 2.
+    // In shape 2's frame, an outward direction of shape 1 points into shape 2.
     let seen = map_pair([normal, outward], |dir| -cso.pose.direction_to_2(dir));
     let pose = cso.pose.inverse();
     let [feature_2, feature_1] = pair.next(cso.shape_2, cso.shape_1, &pose, seen)?;
@@ -149,7 +149,7 @@ pub(super) mod tests {
     use super::*;
     use crate::hull::Hull;
     use crate::query::certificate::facet;
-    use crate::query::certificate::verdict::Verdict;
+    use crate::query::verdict::Verdict;
     use crate::query::vertices;
     use crate::stats::Cost;
     use glam::Vec3;

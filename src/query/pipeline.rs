@@ -1,40 +1,29 @@
-//! The order of the stages, written once for all shapes and all kinds of queries.
+//! The coherent query: starting from the previous frame, the cheapest stage that can *prove* its answer gives
+//! it. The order of the stages is written once for all shapes and all kinds of queries.
+//!
+//! 1. [`Stage::BoundingSpheres`]: the bounding spheres are apart.
+//! 2. [`Stage::Axis`]: one support pair along the previous axis still separates.
+//! 3. [`Stage::Feature`]: the previous nearest features still prove distance or depth.
+//! 4. [`Stage::FacetWalk`]: features next to them prove it.
+//! 5. [`Stage::CachedPolytope`]: those features prove it, together with the polytope of the previous
+//!    expansion.
+//! 6. [`Stage::WarmGjk`]: incremental GJK from the previous axis and vertices.
+//! 7. [`Stage::WarmEpa`]: the depth, expanded from the previous features.
+//!
+//! A pair without a previous frame starts with the line of centres as its axis, and its GJK and EPA count as
+//! cold. A stale or wrong memory costs time, never accuracy: everything is re-evaluated at the present poses.
 
 use glam::DVec3;
 
-use super::Query;
 use super::certificate::flush::FlushFaces;
-use super::certificate::verdict::Verdict;
 use super::feature::Feature;
 use super::gauss_map;
-use super::types::{Answer, PairMemory, Proximity};
+use super::types::{Answer, PairMemory, Proximity, Query, Start};
+use super::verdict::Verdict;
 use crate::gjk::{self, AxisTest, SeparatingAxis};
 use crate::stats::Stage;
 use crate::support::{CsoVertex, Polytope, Support, VertexId};
 use crate::tuning::TILT;
-
-/// Whether a query continues from a previous frame. GJK and EPA count as warm or cold by this.
-#[derive(Clone, Copy)]
-pub(crate) enum Start {
-    Warm,
-    Cold,
-}
-
-impl Start {
-    pub fn gjk(self) -> Stage {
-        match self {
-            Self::Warm => Stage::WarmGjk,
-            Self::Cold => Stage::ColdGjk,
-        }
-    }
-
-    pub fn epa(self) -> Stage {
-        match self {
-            Self::Warm => Stage::WarmEpa,
-            Self::Cold => Stage::ColdEpa,
-        }
-    }
-}
 
 /// Receives the answer of a query by reference, where it is found: copying an answer stalls on store
 /// forwarding.
@@ -55,7 +44,7 @@ pub(crate) trait Sink {
     /// The shapes are farther apart than the query's maximum distance.
     fn separated(&mut self, axis: &SeparatingAxis);
 
-    /// The same, along the axis that the memory has.
+    /// The same, along the axis of the memory.
     #[inline]
     fn still_separated(&mut self, axis: &SeparatingAxis) {
         self.separated(axis);
@@ -121,8 +110,8 @@ impl<A: Polytope, B: Polytope> Strategy<A, B> for Full {
         query.start_walk_from_features(normal, features, verdict, flush)
     }
 
-    /// Often, tilting the axis away from where the shapes come too near makes it separate. Otherwise the
-    /// facets around the vertex come next.
+    /// Often the axis separates once it is tilted away from the place where the shapes come too near.
+    /// Otherwise the facets around the vertex come next.
     fn start_from_axis(
         self,
         query: &mut Query<'_, '_, A, B>,
@@ -165,7 +154,7 @@ impl<A: Support, B: Support> Strategy<A, B> for Distance {
     }
 }
 
-/// An axis tilted away from where the shapes come too near along it.
+/// The axis, tilted away from the place where the shapes come too near.
 #[inline]
 fn tilted(axis: DVec3, too_near: &CsoVertex) -> DVec3 {
     let sideways = too_near.w - axis * axis.dot(too_near.w);
@@ -215,7 +204,7 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
         Some(*stage)
     }
 
-    /// Starts without memory, along an axis, which is mostly the line of centres.
+    /// Starts without memory, along an axis, usually the line of centres.
     fn search_along(&mut self, strategy: impl Strategy<A, B>, axis: DVec3) -> Found {
         match self.test_axis(axis, self.cso.start_vertices(axis)) {
             AxisTest::Separating(apart) => Some((Answer::Separated(apart), Stage::Axis)),
@@ -232,7 +221,7 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
         gjk::test_axis(self.cso, axis, start, self.max_distance, self.cost)
     }
 
-    /// The same of an axis that separated the shapes before.
+    /// The same for an axis that separated the shapes before.
     #[inline]
     fn test_cached_axis(&mut self, axis: DVec3, ids: [VertexId; 2]) -> AxisTest {
         let start = self.cso.clamp_vertices(ids);

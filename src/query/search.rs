@@ -3,10 +3,10 @@
 use super::certificate::flush::FlushFaces;
 use super::certificate::neighbors;
 use super::feature::{self, Feature};
-use super::pipeline::{Found, Start};
+use super::pipeline::Found;
 use super::seeds::EpaSeeds;
-use super::types::{Answer, Proximity};
-use super::{Query, witness};
+use super::types::{Answer, Proximity, Query, Start};
+use super::witness;
 use crate::epa::{self, DepthSearch, KnownDepth, Penetration};
 use crate::gjk::{self, Closest, Outcome, SeparatingAxis, Simplex};
 use crate::simplex::Preferred;
@@ -93,9 +93,10 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         })
     }
 
-    /// The depth, if a candidate and its inset are known. Faces that lie flush on each other, a polytope of a
-    /// previous frame, or the adjacent facets may prove that it is the candidate's. Otherwise EPA expands a polytope
-    /// from points near the candidate. If it finds the shapes apart, GJK finds the distance.
+    /// The depth, given a candidate and its inset. Faces that lie flush on each other, a polytope of a
+    /// previous frame, or the adjacent facets may prove that the candidate is the least depth. Otherwise EPA
+    /// expands a polytope from points near the candidate. If EPA finds that the shapes are apart, GJK finds
+    /// the distance.
     pub(super) fn find_depth(
         &mut self,
         (candidate, inset): (&Proximity, f64),

@@ -1,6 +1,7 @@
 //! What can be read off the files of this repository: names in documents lead somewhere, every
 //! test is run, and habits that are to go do not spread.
 
+mod imports;
 mod names;
 mod ratchets;
 

@@ -69,6 +69,7 @@ const HOT: [(&str, &[&str]); 3] = [
             "src/parry/order",
             "src/parry/operand",
             "src/parry/pair",
+            "src/parry/visit",
         ],
     ),
     (
@@ -228,30 +229,29 @@ fn files_are_short() {
         let count = text.lines().count();
         (count > LONG_FILE).then(|| format!("{path}: {count} lines"))
     });
-    at_most(3, "files are long", &long.collect::<Vec<_>>());
+    at_most(2, "files are long", &long.collect::<Vec<_>>());
 }
 
 /// What users find at the root, in `query` and in `recording`.
 #[test]
 fn few_names_are_public() {
-    let limits = [
-        (9, "src/lib.rs"),
-        (20, "src/query/mod.rs"),
-        (5, "src/parry/recording/mod.rs"),
+    let modules = [
+        "src/lib.rs",
+        "src/query/mod.rs",
+        "src/parry/recording/mod.rs",
     ];
-    let all = files("src", "rs");
-    for (limit, file) in limits {
-        let (_, text) = all
-            .iter()
-            .find(|(path, _)| path == file)
-            .expect("it is there");
-        let exported = text
-            .lines()
-            .filter_map(|line| line.strip_prefix("pub use "));
-        let names = exported.flat_map(|path| path.rsplit(['{', ':']).next().map(|n| n.split(',')));
-        let names: Vec<String> = names.flatten().map(|name| name.trim().to_owned()).collect();
-        at_most(limit, file, &names);
+    let mut names = Vec::new();
+    for (path, text) in files("src", "rs") {
+        if modules.contains(&&*path) {
+            let public = text.lines().filter_map(|line| line.strip_prefix("pub "));
+            let exported = public.filter(|line| !line.starts_with("mod "));
+            let exported = exported.flat_map(|line| line.rsplit(['{', ':']).next());
+            let own = exported.flat_map(|line| line.split(','));
+            names.extend(own.map(|name| format!("{path}: {}", name.trim())));
+        }
     }
+    assert!(names.len() >= 20, "{names:?}");
+    at_most(26, "public names, with that of `recording`", &names);
 }
 
 /// Where each function of a file begins, and how many lines it has.
@@ -288,7 +288,7 @@ fn functions_are_short() {
     let mut long: Vec<(usize, String)> = lengths.filter(|(length, _)| *length > 40).collect();
     long.sort();
     let places: Vec<String> = long.iter().map(|(_, place)| place.clone()).collect();
-    at_most(11, "functions are long", &places);
+    at_most(9, "functions are long", &places);
     assert!(
         long.last().is_none_or(|(length, _)| *length <= 60),
         "{long:?}"

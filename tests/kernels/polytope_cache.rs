@@ -5,9 +5,9 @@ use glam::{DQuat, DVec3};
 use isa_gjk::Hull;
 use isa_gjk::internals::epa::{EpaScratch, KnownDepth, PolytopeCache, penetration};
 use isa_gjk::internals::pose::RelativePose;
+use isa_gjk::internals::query::{Answer, PairMemory, Query};
 use isa_gjk::internals::stats::{Cost, Stage};
 use isa_gjk::internals::support::Cso;
-use isa_gjk::query::{Answer, PairMemory, Query};
 use parry3d::math::Pose;
 use testkit::generate::Rng;
 

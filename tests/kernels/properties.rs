@@ -3,9 +3,9 @@
 use glam::{DVec3, Vec3};
 use isa_gjk::internals::epa::EpaScratch;
 use isa_gjk::internals::pose::RelativePose;
+use isa_gjk::internals::query::{Answer, PairMemory, Proximity, Query};
 use isa_gjk::internals::stats::Cost;
 use isa_gjk::internals::support::{Cso, Polytope, Support};
-use isa_gjk::query::{Answer, PairMemory, Proximity, Query};
 use isa_gjk::{Hull, HullShape, IsaGjkDispatcher};
 use parry3d::math::Pose;
 use parry3d::query::{Contact, QueryDispatcher};

@@ -3,9 +3,10 @@
 use glam::DVec3;
 use isa_gjk::internals::manifold::ContactPoint;
 use isa_gjk::internals::pose::RelativePose;
+use isa_gjk::internals::query::{Answer, PairMemory};
 use isa_gjk::internals::stats::Cost;
 use isa_gjk::internals::support::{FaceId, Polytope, Support, VertexId};
-use isa_gjk::query::{Answer, Feature, PairMemory};
+use isa_gjk::query::Feature;
 use isa_gjk::{Hull, Stage};
 
 use crate::svg::{Canvas, Style, YAW};

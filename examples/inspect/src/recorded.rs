@@ -5,7 +5,8 @@ use std::fs;
 use std::path::Path;
 
 use glam::{DVec3, Vec3};
-use isa_gjk::query::{Certificate, ContactPatch, Polytope, QueryError, SeparationBounds};
+use isa_gjk::internals::support::Polytope;
+use isa_gjk::query::{Certificate, ContactPatch, QueryError, SeparationBounds};
 use isa_gjk::recording::{self, RecordedPair};
 use isa_gjk::{Hull, IsaGjkDispatcher};
 use parry3d::query::ContactManifold;

@@ -11,7 +11,8 @@ use super::face_plane::{FacePlane, polygon_normal};
 use super::flat_edges::NearlyFlatEdges;
 use super::half_edge::{HalfEdge, HalfEdgeMesh, triangle};
 use super::regions::CoplanarRegions;
-use crate::hull::faces::{BESIDE_LIKE, FaceCorner, FaceRecord, Faces};
+use crate::hull::faces::{BESIDE_LIKE, FaceRecord, Faces};
+use crate::hull::graph::FaceCorner;
 use crate::tolerance::{CLUSTER_ANGLE_COS, FACE_FLATNESS};
 
 /// The result of merging triangles.

@@ -3,7 +3,7 @@
 use std::mem;
 
 use crate::hull::HullError;
-use crate::hull::faces::FaceCorner;
+use crate::hull::graph::FaceCorner;
 
 /// A side of a triangle, from one vertex to the next: number `3 t + k` is side `k` of triangle `t`.
 pub(in crate::hull) type HalfEdge = u32;

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::area_vectors::AreaVectors;
 use super::flat_edges::NearlyFlatEdges;
 use super::half_edge::{HalfEdge, HalfEdgeMesh, next, triangle};
-use crate::hull::clusters::largest_first;
+use crate::hull::lists::largest_first;
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS};
 
 /// Sets of triangles, each of which lies in one plane.

@@ -14,7 +14,8 @@ use crate::gjk::{self, Outcome};
 use crate::hull::Hull;
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space;
-use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
+use crate::parry::pair::{Pair, PairVisitor, valid_pose};
+use crate::parry::visit;
 use crate::parry::workspace::Workspace;
 use crate::pose::RelativePose;
 use crate::query::{Certificate, PairMemory, QueryError, SeparationBounds};
@@ -60,7 +61,7 @@ impl SeparationBounds {
         shape_2: &dyn Shape,
         pos12: &Pose,
     ) -> Result<Self, QueryError> {
-        let found = pair::visit(shape_1, shape_2, BoundsQuery { pos12 });
+        let found = visit::shapes(shape_1, shape_2, BoundsQuery { pos12 });
         found.map_err(|_| why_not(pos12, [shape_1, shape_2]))
     }
 }

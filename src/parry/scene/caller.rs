@@ -4,10 +4,11 @@ use glam::DVec3;
 use parry3d::math::Real;
 use parry3d::query::Contact;
 
+use crate::gjk::SeparatingAxis;
 use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
 use crate::pose::{RelativePose, is_unit};
-use crate::query::{Proximity, SeparatingAxis, Sink};
+use crate::query::{Proximity, Sink};
 
 /// The nearest points of a pair, including its rounded borders. Normals and points are in their own shapes'
 /// frames.

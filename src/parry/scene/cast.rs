@@ -6,9 +6,10 @@ use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus, Unsupporte
 use parry3d::shape::Shape;
 
 use crate::curved::Body;
-use crate::parry::pair::{self, Pair, PairVisitor};
+use crate::parry::pair::{Pair, PairVisitor};
 use crate::parry::scene::caller::{CallerProximity, KernelFrame};
 use crate::parry::scene::convex;
+use crate::parry::visit;
 use crate::parry::workspace::Workspace;
 use crate::pose::ValidPose;
 use crate::query::{Answer, PairMemory, Query};
@@ -33,7 +34,7 @@ pub(crate) fn cast_shapes(
         options,
     };
     // Where they overlap at the start parry says what happens.
-    pair::visit(shape_1, shape_2, cast).or_else(|_| {
+    visit::shapes(shape_1, shape_2, cast).or_else(|_| {
         convex::visit([shape_1, shape_2], |pair, _| {
             cast.cast(pair, |_, _, _| Err(Unsupported))
         })

@@ -8,11 +8,12 @@ use crate::curved::{Body, CurvedAnswer, CurvedQuery, Hint};
 use crate::epa;
 use crate::parry::convert::{Core, HalfSpace};
 use crate::parry::instances::{FullWithHull, HullPartner};
-use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
+use crate::parry::pair::{Pair, PairVisitor, valid_pose};
 use crate::parry::scene::caller::{KernelFrame, NearestPoints};
 use crate::parry::scene::capsules;
 use crate::parry::scene::convex;
 use crate::parry::scene::separation::{CoreSeparation, SeparationQuery, over_half_space};
+use crate::parry::visit;
 use crate::parry::workspace::Workspace;
 use crate::pose::ValidPose;
 use crate::query::{Query, moved_apart};
@@ -29,7 +30,7 @@ pub(crate) fn contact(
 ) -> Result<Option<Contact>, Unsupported> {
     let query = ContactQuery { pos12, prediction };
     let shapes = [shape_1, shape_2];
-    pair::visit(shape_1, shape_2, query)
+    visit::shapes(shape_1, shape_2, query)
         .or_else(|_| capsules::contact(pos12, shapes, prediction))
         .or_else(|_| convex::visit_inexact(shapes, |pair, workspace| query.convex(pair, workspace)))
 }

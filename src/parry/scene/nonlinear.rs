@@ -8,14 +8,16 @@ use parry3d::query::{ShapeCastHit, ShapeCastStatus, Unsupported};
 
 use super::motion::{Course, Motion};
 use crate::curved::Body;
+use crate::gjk::SeparatingAxis;
 use crate::parry::composite::scene::MovingShape;
-use crate::parry::pair::{self, Pair, PairVisitor};
+use crate::parry::pair::{Pair, PairVisitor};
 use crate::parry::scene::caller::{CallerProximity, KernelFrame};
 use crate::parry::scene::cast::hit;
 use crate::parry::scene::convex;
+use crate::parry::visit;
 use crate::parry::workspace::Workspace;
 use crate::pose::RelativePose;
-use crate::query::{Distance, PairMemory, Proximity, Query, SeparatingAxis, Sink};
+use crate::query::{Distance, PairMemory, Proximity, Query, Sink};
 use crate::stats::Cost;
 use crate::support::{Polytope, Support, VertexId};
 use crate::tolerance::{AT_START, GJK_GAP_OF_SIZE, IMPACT_GAP};
@@ -37,7 +39,7 @@ pub(crate) fn cast_shapes(
         times,
         stop_at_penetration,
     };
-    pair::visit(shape_1, shape_2, cast).or_else(|_| {
+    visit::shapes(shape_1, shape_2, cast).or_else(|_| {
         convex::visit([shape_1, shape_2], |pair, workspace| {
             cast.run(pair, CURVED_IMPACT_GAP, workspace)
         })

@@ -9,12 +9,13 @@ use super::why::why_not;
 use crate::manifold::{self, PatchCorner};
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space;
-use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
+use crate::parry::pair::{Pair, PairVisitor, valid_pose};
 use crate::parry::scene::caller::{CallerProximity, KernelFrame};
+use crate::parry::visit;
 use crate::parry::workspace::Workspace;
+use crate::pose::RelativePose;
 use crate::query::{
-    Answer, ContactId, ContactPatch, Feature, PairMemory, PatchVertex, Proximity, Query,
-    QueryError, RelativePose,
+    Answer, ContactId, ContactPatch, Feature, PairMemory, PatchVertex, Proximity, Query, QueryError,
 };
 use crate::stats::Cost;
 use crate::support::{Polytope, Support};
@@ -63,7 +64,7 @@ impl ContactPatch {
         if prediction.is_nan() {
             return Err(QueryError::NotFinite);
         }
-        let found = pair::visit(shape_1, shape_2, PatchQuery { pos12, prediction });
+        let found = visit::shapes(shape_1, shape_2, PatchQuery { pos12, prediction });
         found.map_err(|_| why_not(pos12, [shape_1, shape_2]))
     }
 }

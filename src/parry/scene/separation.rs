@@ -10,9 +10,10 @@ use parry3d::shape::Shape;
 use crate::curved::Body;
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space;
-use crate::parry::pair::{self, Pair, PairVisitor, valid_pose};
+use crate::parry::pair::{Pair, PairVisitor, valid_pose};
 use crate::parry::scene::caller::{CallerProximity, NearestPoints};
 use crate::parry::scene::convex;
+use crate::parry::visit;
 use crate::parry::workspace::Workspace;
 use crate::query::{Distance, Query};
 use crate::stats::Cost;
@@ -90,7 +91,7 @@ fn separation(
         pos12,
         max_distance,
     };
-    pair::visit(shape_1, shape_2, query).or_else(|_| {
+    visit::shapes(shape_1, shape_2, query).or_else(|_| {
         convex::visit_inexact([shape_1, shape_2], |pair, workspace| {
             query.separation(pair, GJK_CURVED_GAP, workspace)
         })

@@ -4,7 +4,7 @@ use parry3d::math::Pose;
 use parry3d::shape::Shape;
 
 use crate::parry::operand::is_hull;
-use crate::parry::pair;
+use crate::parry::visit;
 use crate::query::QueryError;
 use crate::stats::Left;
 
@@ -13,7 +13,7 @@ pub(super) fn why_not(pos12: &Pose, shapes: [&dyn Shape; 2]) -> QueryError {
     if !shapes.into_iter().any(is_hull) {
         return QueryError::NoHull;
     }
-    match pair::why_left(pos12, shapes) {
+    match visit::why_left(pos12, shapes) {
         Left::HullNotPrepared => QueryError::HullNotPrepared,
         Left::NotFinite => QueryError::NotFinite,
         _ => QueryError::OtherShape,

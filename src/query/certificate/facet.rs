@@ -16,12 +16,12 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::polygon::{cone_contains_ball, crossing, inset, inset_of_origin, pyramid_contains_ball};
-use super::verdict::{FacetEdge, Verdict};
 use crate::gjk::SeparatingAxis;
 use crate::map_pair::map_pair;
 use crate::pose::RelativePose;
 use crate::query::feature::Feature;
 use crate::query::types::Proximity;
+use crate::query::verdict::{FacetEdge, Verdict};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
 use crate::tolerance::PARALLEL_EDGES;

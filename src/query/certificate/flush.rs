@@ -13,10 +13,9 @@ use glam::DVec3;
 
 use super::polygon::{cone_contains_ball, inset, inset_of_quadrilateral};
 use crate::map_pair::map_pair;
-use crate::query::Query;
 use crate::query::feature::Feature;
 use crate::query::last_contacts::LastContacts;
-use crate::query::types::Proximity;
+use crate::query::types::{Proximity, Query};
 use crate::support::{Cso, FaceId, Polytope};
 use crate::tolerance::KEPT_ANGLE_COS;
 use crate::tuning::FLUSH_TIE;

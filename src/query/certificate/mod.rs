@@ -4,7 +4,6 @@ pub(super) mod facet;
 pub(super) mod flush;
 pub(super) mod neighbors;
 mod polygon;
-pub(crate) mod verdict;
 pub(super) mod vertex_edge;
 
 pub(crate) use polygon::{cone_contains_ball, inset};

@@ -11,10 +11,10 @@ use std::array;
 use glam::DVec3;
 
 use super::polygon::ball_is_inside;
-use super::verdict::FacetEdge;
 use crate::query::feature::{CORNERS, Feature};
 use crate::query::gauss_map;
 use crate::query::types::Proximity;
+use crate::query::verdict::FacetEdge;
 use crate::support::{Cso, CsoVertex, Polytope, VertexId};
 
 /// A ball that sticks out through more sides than this is larger than the facet and its neighbours.
@@ -72,7 +72,7 @@ impl Pyramids {
         has_room.then_some(facet)
     }
 
-    /// The plane through a side and the apex: a normal, and how far the facet's middle is along it.
+    /// The plane through a side and the apex: a normal, and the height of the facet's middle over the plane.
     fn side_plane(&self, facet: &Facet, i: usize) -> (DVec3, f64) {
         let [from, to] = facet.ends(i).map(|end| end.w);
         let normal = (to - from).cross(self.apex - from);
@@ -164,9 +164,9 @@ mod tests {
     use crate::epa::{self, EpaScratch};
     use crate::hull::Hull;
     use crate::query::certificate::facet;
-    use crate::query::certificate::verdict::Verdict;
     use crate::query::gauss_map::tests::{direction, random_pose};
     use crate::query::seeds::EpaSeeds;
+    use crate::query::verdict::Verdict;
     use crate::stats::Cost;
     use crate::tolerance::DEPTH_GAP;
     use glam::Vec3;

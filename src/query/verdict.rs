@@ -1,4 +1,4 @@
-//! What a pair of features proves, and where the walk continues.
+//! The verdict on a pair of features: an answer, or where the walk continues.
 
 use glam::DVec3;
 
@@ -16,10 +16,10 @@ pub(crate) enum Verdict {
     Certified(Proximity),
     /// The origin projects beyond this side of the facet: another facet is nearest now.
     OutsideEdge(FacetEdge),
-    /// The facet's plane, with this normal, cuts through the difference, as this vertex is beyond it.
+    /// The facet's plane, with this normal, cuts through the difference: this vertex is beyond it.
     NotSupporting(CsoVertex, DVec3),
     /// The shapes overlap, but perhaps less in another direction. This is the answer if the facet is the
-    /// nearest. The origin projects into it, so far from its sides.
+    /// nearest. The origin projects into it, this far from its sides.
     Undecided(Proximity, f64),
     /// These features do not span a facet.
     Degenerate,

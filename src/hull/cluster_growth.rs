@@ -1,0 +1,186 @@
+//! Grows face clusters, when the first of a hull is looked up.
+
+use glam::{DVec2, DVec3, Vec3};
+
+use super::clusters::FaceClusters;
+use super::faces::Faces;
+use super::graph::{EdgeGraph, FaceCorner, NO_EDGE};
+use super::lists::largest_first;
+use crate::support::FaceId;
+use crate::tolerance::CLUSTER_ANGLE_COS;
+
+/// A cluster has at most this many members, so that one contact never has to process thousands of faces. The
+/// rest of a larger flat region becomes another cluster.
+const MAX_MEMBERS: usize = 64;
+
+/// Grows clusters from the faces that are beside a face of about their direction, the largest first.
+pub(super) fn grow_clusters(points: &[Vec3], faces: &Faces, graph: &EdgeGraph) -> FaceClusters {
+    let mut clusters = FaceClusters::default();
+    let mut taken: Vec<bool> = (0..faces.len())
+        .map(|face| !faces.is_beside_like(FaceId::new(face)))
+        .collect();
+    for seed in seeds(points, faces) {
+        if taken[usize::from(seed)] || faces.normal(seed.into()) == DVec3::ZERO {
+            continue;
+        }
+        let mut cluster = Cluster::new(points, faces, graph, seed);
+        cluster.grow(&mut taken);
+        if cluster.members.len() > 1 {
+            cluster.add_to(&mut clusters);
+        }
+    }
+    clusters
+}
+
+/// The faces beside one of about their direction, the largest first.
+fn seeds(points: &[Vec3], faces: &Faces) -> impl Iterator<Item = u16> {
+    let seeds = (0..faces.len() as u16).filter(|&face| faces.is_beside_like(face.into()));
+    largest_first(seeds, |face| area(points, faces, face))
+}
+
+/// Twice the area of a face.
+fn area(points: &[Vec3], faces: &Faces, face: u16) -> f64 {
+    let corners = faces.polygon(face.into());
+    let first = at_first(points, corners);
+    let at = |i: usize| points[usize::from(corners[i].vertex)].as_dvec3() - first;
+    let fan = (1..corners.len() - 1).map(|i| at(i).cross(at(i + 1)));
+    fan.sum::<DVec3>().length()
+}
+
+fn at_first(points: &[Vec3], corners: &[FaceCorner]) -> DVec3 {
+    points[usize::from(corners[0].vertex)].as_dvec3()
+}
+
+/// A cluster that grows.
+struct Cluster<'a> {
+    points: &'a [Vec3],
+    faces: &'a Faces,
+    graph: &'a EdgeGraph,
+    /// The plane of the face that it grows from.
+    normal: DVec3,
+    corner: DVec3,
+    members: Vec<u16>,
+}
+
+impl<'a> Cluster<'a> {
+    fn new(points: &'a [Vec3], faces: &'a Faces, graph: &'a EdgeGraph, seed: u16) -> Self {
+        Self {
+            points,
+            faces,
+            graph,
+            normal: faces.normal(seed.into()),
+            corner: at_first(points, faces.polygon(seed.into())),
+            members: vec![seed],
+        }
+    }
+
+    fn add_to(&self, clusters: &mut FaceClusters) {
+        let outline = self.outline();
+        let covered = self.covered_nonmembers(&outline);
+        let ends = outline.iter().cycle().skip(1);
+        let corners = outline.iter().zip(ends).map(|(&from, &to)| {
+            let slot = self.graph.edge_slot(from.into(), to.into());
+            FaceCorner {
+                vertex: from,
+                slot: slot.unwrap_or(NO_EDGE),
+            }
+        });
+        clusters.push(self.faces.len(), &self.members, covered, corners);
+    }
+
+    fn grow(&mut self, taken: &mut [bool]) {
+        taken[usize::from(self.members[0])] = true;
+        let mut next = 0;
+        while let Some(&member) = self.members.get(next) {
+            let polygon: FaceId = member.into();
+            for side in 0..self.faces.polygon(polygon).len() {
+                let Some(other) = self.face_beyond(member, side) else {
+                    continue;
+                };
+                let fits = self.members.len() < MAX_MEMBERS && !taken[usize::from(other)];
+                if fits && self.accepts(other.into()) {
+                    taken[usize::from(other)] = true;
+                    self.members.push(other);
+                }
+            }
+            next += 1;
+        }
+    }
+
+    /// The face beyond a side of a face.
+    fn face_beyond(&self, face: u16, side: usize) -> Option<u16> {
+        let edge = self.faces.edge(face.into(), side)?;
+        let [left, right] = self.graph.faces_of_edge(edge)?;
+        Some(if left == face { right } else { left })
+    }
+
+    fn way_to(&self, corner: &FaceCorner) -> DVec3 {
+        self.points[usize::from(corner.vertex)].as_dvec3() - self.corner
+    }
+
+    /// Whether a face and all of its corners, seen from the first face, lie within the cluster's angle. A
+    /// sliver has no plane and is judged by its corners alone.
+    fn accepts(&self, face: FaceId) -> bool {
+        let sine = (1.0 - CLUSTER_ANGLE_COS * CLUSTER_ANGLE_COS).sqrt();
+        let near = |corner: &FaceCorner| {
+            let way = self.way_to(corner);
+            self.normal.dot(way) >= -sine * way.length()
+        };
+        let other = self.faces.normal(face);
+        let aligned = other == DVec3::ZERO || other.dot(self.normal) >= CLUSTER_ANGLE_COS;
+        aligned && self.faces.polygon(face).iter().all(near)
+    }
+
+    fn corners(&self) -> impl Iterator<Item = &'a FaceCorner> {
+        let faces = self.faces;
+        let members = self.members.iter();
+        members.flat_map(move |&face| faces.polygon(face.into()))
+    }
+
+    /// The convex outline of the members seen against the normal, counter-clockwise (Andrew, *Another
+    /// efficient algorithm for convex hulls in two dimensions*, IPL 9(5), 1979).
+    fn outline(&self) -> Vec<u16> {
+        let u = self.normal.any_orthonormal_vector();
+        let v = self.normal.cross(u);
+        let place = |corner: &FaceCorner| {
+            let p = self.way_to(corner);
+            (DVec2::new(p.dot(u), p.dot(v)), corner.vertex)
+        };
+        let mut corners: Vec<(DVec2, u16)> = self.corners().map(place).collect();
+        corners
+            .sort_by(|(a, i), (b, j)| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(i.cmp(j)));
+        corners.dedup();
+        let mut outline = half_outline(corners.iter());
+        outline.extend(half_outline(corners.iter().rev()));
+        outline
+    }
+
+    /// The faces that are not members, but meet a vertex of a member inside the outline: they lie partly under
+    /// it where it cuts across a bay.
+    fn covered_nonmembers(&self, outline: &[u16]) -> Vec<u16> {
+        let inside = self
+            .corners()
+            .map(|c| c.vertex)
+            .filter(|v| !outline.contains(v));
+        let around = inside.flat_map(|vertex| self.graph.faces_around(vertex.into()).flatten());
+        let mut covered: Vec<u16> = around.filter(|face| !self.members.contains(face)).collect();
+        covered.sort_unstable();
+        covered.dedup();
+        covered
+    }
+}
+
+/// Half of an outline, from the first point up to the last, which is left out.
+fn half_outline<'a>(corners: impl Iterator<Item = &'a (DVec2, u16)>) -> Vec<u16> {
+    let mut chain: Vec<(DVec2, u16)> = Vec::new();
+    for &corner in corners {
+        while let [.., (a, _), (b, _)] = chain[..]
+            && (b - a).perp_dot(corner.0 - a) <= 0.0
+        {
+            chain.pop();
+        }
+        chain.push(corner);
+    }
+    chain.pop();
+    chain.into_iter().map(|(_, vertex)| vertex).collect()
+}

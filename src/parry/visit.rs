@@ -1,0 +1,194 @@
+//! From parry's shapes to the visitor of their pair: finds the hull, and the kind of the other shape.
+
+use parry3d::math::{Pose, Real};
+use parry3d::query::Unsupported;
+use parry3d::shape::{Shape, ShapeType, TypedShape};
+
+use crate::curved::Body;
+use crate::map_pair::map_pair;
+use crate::parry::convert::{self, Core};
+use crate::parry::hull_cache::HullCache;
+use crate::parry::hull_cache::epoch::Epoch;
+use crate::parry::instances::HullPartner;
+use crate::parry::operand::{Operand, PreparedOperand};
+use crate::parry::order::PairOrder;
+use crate::parry::pair::{Pair, PairVisitor};
+use crate::parry::workspace::{ThreadWorkspace, Workspace};
+use crate::pose::ValidPose;
+use crate::stats::Left;
+
+/// Visits a pair of a hull and a shape that the kernels know.
+#[inline]
+pub(crate) fn shapes<V: PairVisitor>(
+    shape_1: &dyn Shape,
+    shape_2: &dyn Shape,
+    visitor: V,
+) -> Result<V::Answer, Unsupported> {
+    let both = map_pair([shape_1, shape_2], Operand::new);
+    operands(&both, Epoch::of_pair(), visitor)
+}
+
+/// Like [`shapes`], for shapes that do not change during `epoch`.
+// perf: in a call the operands would go through memory, which pairs that are apart notice.
+#[inline(always)]
+pub(crate) fn operands<V: PairVisitor>(
+    [operand_1, operand_2]: &[Operand<'_>; 2],
+    epoch: Epoch,
+    mut visitor: V,
+) -> Result<V::Answer, Unsupported> {
+    let are_hulls = [operand_1.is_hull(), operand_2.is_hull()];
+    let order = PairOrder::with_first(are_hulls).ok_or(Unsupported)?;
+    let hull = |operand| HullOperand {
+        operand,
+        epoch,
+        order,
+    };
+    match are_hulls {
+        [true, true] => ThreadWorkspace::with(
+            |ThreadWorkspace {
+                 hulls, workspace, ..
+             }| {
+                hulls.begin();
+                let known = [operand_1.known(hulls, epoch), operand_2.known(hulls, epoch)];
+                let [first, second] = match known {
+                    [Some(first), Some(second)] => [first, second],
+                    _ => prepare([operand_1, operand_2], hulls, epoch).ok_or(Unsupported)?,
+                };
+                let pair = Pair {
+                    hull: first.hull,
+                    other: second.hull,
+                    border_radii: [first.border_radius, second.border_radius],
+                    order,
+                };
+                visitor.visit(&pair, workspace)
+            },
+        ),
+        [true, false] => hull(operand_1).visit(operand_2.shape, &mut visitor),
+        [false, _] => hull(operand_2).visit(operand_1.shape, &mut visitor),
+    }
+}
+
+/// The hulls of those operands that are hulls. New ones are prepared.
+#[inline(never)]
+fn prepare<'a>(
+    [operand_1, operand_2]: [&Operand<'a>; 2],
+    hulls: &'a mut HullCache,
+    epoch: Epoch,
+) -> Option<[PreparedOperand<'a>; 2]> {
+    let first = operand_1.prepare(hulls, epoch)?;
+    let second = operand_2.prepare(hulls, epoch)?;
+    Some([first.hull(hulls)?, second.hull(hulls)?])
+}
+
+/// Why a pair with a hull is left to the fallback.
+#[cold]
+pub(crate) fn why_left(pos12: &Pose, shapes: [&dyn Shape; 2]) -> Left {
+    if ValidPose::new(pos12).is_none() {
+        return Left::NotFinite;
+    }
+    let is_prepared = |shape| {
+        let operand = Operand::new(shape);
+        let is_found = |thread: &mut ThreadWorkspace| {
+            operand
+                .prepare(&mut thread.hulls, Epoch::of_pair())
+                .is_some()
+        };
+        !operand.is_hull() || ThreadWorkspace::with(is_found)
+    };
+    if shapes.into_iter().all(is_prepared) {
+        Left::OtherShape
+    } else {
+        Left::HullNotPrepared
+    }
+}
+
+/// A hull and its position in the pair. It is looked up only once the other shape is known.
+struct HullOperand<'a> {
+    operand: &'a Operand<'a>,
+    epoch: Epoch,
+    order: PairOrder,
+}
+
+impl HullOperand<'_> {
+    /// Visits the hull and another shape, if that is of a known kind and neither too flat nor too small.
+    #[inline(never)]
+    fn visit<V: PairVisitor>(
+        &self,
+        other: &dyn Shape,
+        visitor: &mut V,
+    ) -> Result<V::Answer, Unsupported> {
+        // The typed shape of a user's own shape may only be similar.
+        if other.shape_type() == ShapeType::Custom {
+            return Err(Unsupported);
+        }
+        let typed = other.as_typed_shape();
+        if let TypedShape::HalfSpace(half_space) = typed {
+            let half_space = convert::half_space(half_space).ok_or(Unsupported)?;
+            return self.with(&half_space, 0.0, |pair, workspace| {
+                visitor.visit_half_space(pair, workspace)
+            });
+        }
+        let found = Core::of_typed(typed);
+        let Some((core, border_radius)) = &found else {
+            return Err(Unsupported);
+        };
+        match core {
+            Core::Ball(core) => self.polytope(core, *border_radius, visitor),
+            Core::Segment(core) => self.polytope(core, *border_radius, visitor),
+            Core::Triangle(core) => self.polytope(core, *border_radius, visitor),
+            Core::Cuboid(core) => self.polytope(core, *border_radius, visitor),
+            Core::Cylinder(core) => self.curved(core, *border_radius, visitor),
+            Core::Cone(core) => self.curved(core, *border_radius, visitor),
+        }
+    }
+
+    #[inline]
+    fn polytope<V: PairVisitor>(
+        &self,
+        other: &impl HullPartner,
+        border_radius: Real,
+        visitor: &mut V,
+    ) -> Result<V::Answer, Unsupported> {
+        self.with(other, border_radius, |pair, workspace| {
+            visitor.visit(pair, workspace)
+        })
+    }
+
+    #[inline]
+    fn curved<V: PairVisitor>(
+        &self,
+        other: &impl Body,
+        border_radius: Real,
+        visitor: &mut V,
+    ) -> Result<V::Answer, Unsupported> {
+        self.with(other, border_radius, |pair, workspace| {
+            visitor.visit_curved(pair, workspace)
+        })
+    }
+
+    /// Calls the visitor with the hull and the other shape.
+    #[inline]
+    fn with<B, T>(
+        &self,
+        other: &B,
+        border_radius: Real,
+        visit: impl FnOnce(&Pair<'_, B>, &mut Workspace) -> Result<T, Unsupported>,
+    ) -> Result<T, Unsupported> {
+        ThreadWorkspace::with(
+            |ThreadWorkspace {
+                 hulls, workspace, ..
+             }| {
+                hulls.begin();
+                let prepared = self.operand.prepare(hulls, self.epoch).ok_or(Unsupported)?;
+                let prepared = prepared.hull(hulls).ok_or(Unsupported)?;
+                let pair = Pair {
+                    hull: prepared.hull,
+                    other,
+                    border_radii: [prepared.border_radius, border_radius.into()],
+                    order: self.order,
+                };
+                visit(&pair, workspace)
+            },
+        )
+    }
+}
