@@ -73,6 +73,7 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 mod arg_max;
+mod at;
 #[cfg(feature = "bevy")]
 pub mod bevy;
 mod curved;

@@ -218,8 +218,8 @@ pub(crate) const MIN_BOX_THICKNESS: f64 = 1e-7;
 /// A correction of a unit normal by less than this in each coordinate is mere rounding.
 pub(crate) const UNCORRECTED: f32 = 1e-6;
 
-/// What is on the border of a face is looked for nearer to the middle of the part, by this share of the way. The
-/// upper side of a cut is on the surface of the parts on both sides.
+/// Points on the border of a face are tested nearer to the middle of the part, by this share of the way: the
+/// upper edge of a cut is on the surface of the parts on both sides.
 pub(crate) const SEAM_INSET: f64 = 1e-3;
 
 /// A part of a compound covers a face of another one at a place if it is found this far beyond the face, as a
@@ -270,22 +270,22 @@ pub const CAPSULE_TOUCH: f64 = 1e-12;
 /// Gaps that differ by less than this share of a radius count as equal: half of the promised accuracy.
 pub const SAME_GAP: f64 = 1e-5;
 
-/// What is outside of an outline by less than this share of its size is on it: f64 sums of coordinates are
-/// off by a few units of 1e-16.
+/// A point outside of an outline by less than this share of its size counts as on it: f64 sums of coordinates
+/// are off by a few units of 1e-16.
 pub const ON_OUTLINE: f64 = 1e-12;
 
-/// A disc leans over a flat side if its slope is above this. Below it the deepest corner of a square is
-/// as deep as the rim up to the promised accuracy, and noise must not turn the square.
+/// A disc counts as tilted over a flat side if its slope is above this. Below it, the deepest corner of a
+/// square is as deep as the rim up to the promised accuracy, and noise must not turn the square.
 pub const LEVEL: f64 = 5e-5;
 
-/// A normal is that of a piece of surface if it is this near: what a bound loses by the difference is its
-/// square.
+/// A normal counts as that of a piece of surface if the two differ by less than this. A bound loses only the
+/// square of the difference.
 pub const SAME_NORMAL: f64 = 1e-7;
 
-/// Axes span less than this sine squared where they are parallel: f64 leaves half of its digits.
+/// Axes count as parallel if the squared sine of their angle is below this: f64 leaves half of its digits.
 pub const PARALLEL_AXES: f64 = 1e-15;
 
-/// A search along the normals of an edge or a side ends at this angle: what it loses is the square.
+/// A search along the normals of an edge or a side ends at steps below this angle. It loses only its square.
 pub const SETTLED_ANGLE: f64 = 1e-9;
 
 /// Bounds of the distance of curved shapes differ by no more than this share of the smaller radius. The
@@ -296,5 +296,5 @@ pub const FINE_GAP: f64 = 1e-9;
 /// promised accuracy of a distance. What their climbs may lose is less.
 pub(crate) const IMPACT_GAP: f64 = 1e-5;
 
-/// Parry takes an impact so soon after the start of such a cast for one at the start. In units of time.
+/// Parry counts an impact this soon after the start of such a cast, in units of time, as one at the start.
 pub(crate) const AT_START: f64 = 1e-5;

@@ -18,12 +18,14 @@ pub(crate) const GOOD_SEED: f64 = 1e-3;
 /// from the previous frame, and starting from the present features costs less.
 pub(crate) const MIN_GROWABLE: f64 = 0.9;
 
-/// Of the directions that a facet covers, a proof of the others leaves out those within this share of the tangent. So
-/// it holds while the facet becomes smaller or turns.
+/// A proof for the directions that a facet does not cover spares a cap of directions. The cap's half-angle
+/// has this share of the tangent of the facet's own. So the proof holds while the facet becomes smaller or
+/// turns.
 pub(crate) const CAP_SHARE: f64 = 0.7;
 
-/// The least tangent of a facet that covers many directions. Those of hulls of a hundred vertices cover fewer, and
-/// while such hulls turn by half a degree in each frame, a proof of the others hardly lasts for one.
+/// The least tangent of a facet that covers many directions. Facets of hulls of a hundred vertices cover
+/// fewer. If such hulls turn by half a degree in each frame, a proof for the other directions hardly lasts
+/// for one.
 pub(crate) const WIDE_CAP: f64 = 0.25;
 
 /// If the two points of each contact are within this share of the smaller shape's radius of each other, across
@@ -81,35 +83,35 @@ pub(crate) const SIDE_BY_SIDE_SINE: f64 = 0.17;
 /// contact.
 pub(crate) const SHORT_LINE: f64 = 0.05;
 
-/// Of two discs that are shifted by less than twice this share of the radius, a square in both serves as
-/// well as the ends of their lens, which turn with the shift.
+/// If two discs are shifted by less than twice this share of the radius, a square in both serves as well as
+/// the ends of their lens, which turn with the shift.
 pub(crate) const SMALL_SHIFT: f64 = 0.01;
 
-/// Between the bounds of a coarse search, as a share of the smaller radius: near enough to know which
-/// pieces of surface are in contact. They give the answer then. A tenth and ten times of it serve as well.
+/// The gap between the bounds of a coarse search, as a share of the smaller radius. It is small enough to
+/// tell which pieces of surface are in contact; these then give the answer. A tenth of it, or ten times it,
+/// serves as well.
 pub(crate) const COARSE_GAP: f64 = 0.002;
 
-/// GJK's gap in a cast of turning curved shapes: a part of the gap at which it ends, which is then known well
-/// enough.
+/// GJK's gap in a cast of turning curved shapes: a fraction of the gap at which the cast ends.
 pub(crate) const CURVED_IMPACT_GAP: f64 = crate::tolerance::IMPACT_GAP / 4.0;
 
 /// GJK's gap in a cast of turning shapes that are far apart, relative to the separation that was proved last: a
 /// normal that is off by so little proves nearly as much.
 pub(crate) const ROUGH_GAP: f64 = 0.01;
 
-/// Of a gap: when the proof of a normal leaves less of it, such a cast goes on from there with a new normal.
+/// If the proof along a normal leaves less than this share of the gap, such a cast continues with a new normal.
 pub(crate) const USED_UP: f64 = 0.05;
 
-/// From one frame to the next a normal turns by less than this angle, mostly: pieces of surface that it misses by
-/// more are looked at later.
+/// From one frame to the next a normal usually turns by less than this angle. Pieces of surface that it
+/// misses by more are tried later.
 pub(crate) const SMALL_TURN: f64 = 0.03;
 
-/// The longest step of Newton's method, as an angle: beyond it the slope at hand says little.
+/// The longest step of Newton's method, as an angle: the slope says little about normals farther away.
 pub(crate) const LONGEST_STEP: f64 = 0.5;
 
 /// Each step of Newton's method doubles the number of correct digits.
 pub(crate) const MAX_NEWTON_STEPS: usize = 5;
 
-/// A face whose fourth corner is no higher over the first three than this share of its length seems flat. Then
-/// flat sides are looked for first.
+/// A face seems flat if its fourth corner is no higher over the first three than this share of its length.
+/// Then flat sides are tried first.
 pub(crate) const SEEMS_FLAT: f64 = 1e-5;

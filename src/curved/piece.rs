@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::pose::RelativePose;
+use crate::primitive::nearest_share;
 use crate::support::FaceId;
 use crate::tolerance::{ON_OUTLINE, SAME_NORMAL};
 
@@ -136,9 +137,8 @@ impl Generator {
         let at = p + outward * about;
         // On the line itself rounding may hide the root.
         let along = b - a;
-        let squared = along.length_squared();
-        let share = ((at - a).dot(along) / squared).clamp(0.0, 1.0);
-        if at.distance_squared(a + along * share) <= ON_OUTLINE * ON_OUTLINE * squared {
+        let nearest = a + along * nearest_share(self.ends, at);
+        if at.distance_squared(nearest) <= ON_OUTLINE * ON_OUTLINE * along.length_squared() {
             return Some(about);
         }
         self.surface.exit(p, outward, about)

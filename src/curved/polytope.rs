@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::body::{Body, CircularEdge, Ruling};
 use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall, across};
+use crate::primitive::nearest_share;
 use crate::query::inset;
 use crate::stats::Cost;
 use crate::support::{Polytope, VertexId};
@@ -34,9 +35,8 @@ impl<P: Polytope> Body for P {
         let (from, vertex) = self.support(dir, self.start_vertex(dir), cost);
         let face = self.face_at_vertex(vertex, dir);
         if self.face_len(face) == 2 {
-            let along = self.vertex(self.face_vertex(face, 1 - vertex.index())) - from;
-            let share = along.dot(near - from) / along.length_squared();
-            return Some(from + along * share.clamp(0.0, 1.0));
+            let to = self.vertex(self.face_vertex(face, 1 - vertex.index()));
+            return Some(from + (to - from) * nearest_share([from, to], near));
         }
         let flat = self.flat(dir, vertex)?;
         let p = near - flat.normal * (flat.normal.dot(near) - flat.offset);

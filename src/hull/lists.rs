@@ -2,6 +2,8 @@
 
 use std::cmp::Reverse;
 
+use crate::at::At;
+
 /// Lists, one after the other.
 #[derive(Clone, Debug)]
 pub(super) struct Rows<T> {
@@ -32,6 +34,51 @@ impl<T> Rows<T> {
     pub fn row(&self, row: usize) -> &[T] {
         let first = row.checked_sub(1).map_or(0, |before| self.ends[before]);
         &self.items[first..self.ends[row]]
+    }
+
+    pub fn rows(&self) -> impl Iterator<Item = &[T]> {
+        (0..self.len()).map(|row| self.row(row))
+    }
+
+    /// Sorts items into `count` lists by their keys, each list in the given order (a counting sort). `None` if a
+    /// key is too large.
+    pub fn by_key(count: usize, items: impl Iterator<Item = (u32, T)> + Clone) -> Option<Self>
+    where
+        T: Copy + Default,
+    {
+        let mut places = vec![0; count + 1];
+        for (key, _) in items.clone() {
+            *places.get_mut(key as usize + 1)? += 1;
+        }
+        for key in 1..places.len() {
+            places[key] += places[key - 1];
+        }
+        let mut sorted = vec![T::default(); places[count]];
+        // This moves each place from where a list begins to where it ends.
+        for (key, item) in items {
+            let place = places.at_mut(key);
+            sorted[*place] = item;
+            *place += 1;
+        }
+        places.pop();
+        Some(Self {
+            items: sorted,
+            ends: places,
+        })
+    }
+
+    /// Calls `f` for each list.
+    pub fn each_mut(&mut self, mut f: impl FnMut(&mut [T])) {
+        let mut first = 0;
+        for &end in &self.ends {
+            f(&mut self.items[first..end]);
+            first = end;
+        }
+    }
+
+    /// All lists in one.
+    pub fn into_items(self) -> Vec<T> {
+        self.items
     }
 
     pub fn heap_bytes(&self) -> usize {

@@ -7,6 +7,7 @@
 use std::array;
 use std::ops::RangeInclusive;
 
+use crate::at::At;
 use crate::simd::{f32x4, f32x8};
 use glam::{DVec3, Vec3};
 
@@ -90,7 +91,7 @@ impl Scan {
             highest = preferred.into();
         }
         candidates &= !(1 << highest);
-        let height = |vertex: u32| dir.dot(points[vertex as usize].as_dvec3());
+        let height = |vertex: u32| dir.dot(points.at(vertex).as_dvec3());
         let mut most = height(highest);
         while candidates != 0 {
             let vertex = candidates.trailing_zeros();

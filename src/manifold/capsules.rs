@@ -5,6 +5,7 @@
 
 use glam::DVec3;
 
+use crate::primitive::nearest_share;
 use crate::tolerance::{CAPSULE_TOUCH, SAME_GAP};
 use crate::tuning::{SHORT_LINE, SIDE_BY_SIDE_SINE};
 
@@ -89,13 +90,7 @@ impl Capsule {
 
     /// The fraction of the way from `a` to `b` at which the core is nearest to a point.
     fn nearest_share(&self, p: DVec3) -> f64 {
-        let axis = self.axis();
-        let length_squared = axis.length_squared();
-        if length_squared > 0.0 {
-            ((p - self.a).dot(axis) / length_squared).clamp(0.0, 1.0)
-        } else {
-            0.0
-        }
+        nearest_share([self.a, self.b], p)
     }
 
     /// The distance along the unit vector `dir` at which the line through `p` leaves the capsule; `None` if

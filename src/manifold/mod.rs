@@ -110,6 +110,7 @@ mod tests {
     use crate::epa::EpaScratch;
     use crate::hull::Hull;
     use crate::pose::RelativePose;
+    use crate::primitive::nearest_share;
     use crate::query::{Answer, Feature, PairMemory, Query};
     use crate::stats::Cost;
 
@@ -127,12 +128,9 @@ mod tests {
         match feature {
             Feature::Vertex(v) => shape.vertex(v).distance(point),
             Feature::Edge(e) => {
-                let [a, b] = shape
-                    .edge_ends(e)
-                    .expect("an edge")
-                    .map(|v| shape.vertex(v));
-                let along = (point - a).dot(b - a) / (b - a).length_squared();
-                a.lerp(b, along.clamp(0.0, 1.0)).distance(point)
+                let ends = shape.edge_ends(e).expect("an edge");
+                let [a, b] = ends.map(|v| shape.vertex(v));
+                a.lerp(b, nearest_share([a, b], point)).distance(point)
             }
             Feature::Face(f) => (shape.face_normal(f).dot(point) - shape.face_offset(f)).abs(),
         }

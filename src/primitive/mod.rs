@@ -17,4 +17,5 @@ pub use cone::Cone;
 pub use cuboid::CuboidPolytope;
 pub use cylinder::Cylinder;
 pub use segment::Segment;
+pub(crate) use segment::nearest_share;
 pub use triangle::TrianglePolytope;

@@ -28,6 +28,17 @@ impl Segment {
     }
 }
 
+/// The fraction of the way from `a` to `b` at which it is nearest to a point. Zero if it has no length.
+pub(crate) fn nearest_share([a, b]: [DVec3; 2], p: DVec3) -> f64 {
+    let along = b - a;
+    let length_squared = along.length_squared();
+    if length_squared > 0.0 {
+        ((p - a).dot(along) / length_squared).clamp(0.0, 1.0)
+    } else {
+        0.0
+    }
+}
+
 impl Support for Segment {
     #[inline]
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {

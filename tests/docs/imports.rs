@@ -46,7 +46,9 @@ fn declarations(text: &str) -> Vec<String> {
 
 impl Imports {
     fn read() -> Self {
-        let texts = files("src", "rs").into_iter().map(|(path, text)| {
+        let files = files("src", "rs").into_iter();
+        let files = files.filter(|(path, _)| !path.ends_with("/tests.rs"));
+        let texts = files.map(|(path, text)| {
             let path = path.trim_start_matches("src/").trim_end_matches(".rs");
             let names = path
                 .split('/')

@@ -2,6 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
+use crate::at::At;
 use crate::simd::{DVec3x4, LANES, f64x4, sum, widened};
 use crate::tolerance::MIN_TRIANGLE_HEIGHT;
 
@@ -36,7 +37,7 @@ impl AreaVectors {
         let mut add = |[one, two, three, four]: [&[u32; 3]; LANES], count: usize| {
             let corner = |k: usize| {
                 let four = [one[k], two[k], three[k], four[k]];
-                DVec3x4::gather(four, |v| points[v as usize])
+                DVec3x4::gather(four, |v| points.at(v))
             };
             let (a, b, c) = (corner(0), corner(1), corner(2));
             let vector = push_four(&mut vectors, [a, b, c], count);
@@ -119,7 +120,7 @@ const COUNTED: [[f64; LANES]; LANES + 1] = [
 ];
 
 pub(super) fn longest_side(points: &[DVec3], triangle: [u32; 3]) -> f64 {
-    let [a, b, c] = triangle.map(|v| points[v as usize]);
+    let [a, b, c] = triangle.map(|v| points.at(v));
     let squares = [a - b, b - c, c - a].map(DVec3::length_squared);
     squares[0].max(squares[1]).max(squares[2]).sqrt()
 }

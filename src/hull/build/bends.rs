@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::area_vectors::AreaVectors;
 use super::half_edge::{DirectedEdge, HalfEdge, HalfEdgeMesh};
+use crate::at::At;
 use crate::hull::HullError;
 use crate::tolerance::{FLAT_EDGE, MAX_DENT, NEARLY_FLAT_COS, STEEP_EDGE};
 
@@ -73,7 +74,7 @@ impl Bends {
         if left.is_within(NEARLY_FLAT_COS, right) {
             self.nearly_flat.push(edge.side.half_edge());
         }
-        let across = points[usize::from(edge.beside.to)] - points[edge.from as usize];
+        let across = points[usize::from(edge.beside.to)] - points.at(edge.from);
         // Six times the volume between the triangles, negative where the edge is convex.
         let rise = left.vector.dot(across);
         let area = if left.area > right.area {

@@ -7,6 +7,8 @@ use glam::{DVec3, Vec3};
 use parry3d::shape::ConvexPolyhedron;
 
 use super::flat_sides::{SideBorder, from_lowest, side_normal, zigzag};
+use crate::at::At;
+use crate::hull::lists::Rows;
 use crate::tuning::SEEMS_FLAT;
 
 /// The triangles of a polyhedron whose faces are its flat sides, with diagonals that depend only on its points, in
@@ -115,38 +117,26 @@ impl FaceTriangles {
 /// Triangles in the order of their corners: a counting sort by the first one, of so many. `None` if there is no
 /// such corner.
 fn sorted(triangles: &[[u32; 3]], corners: usize) -> Option<Vec<[u32; 3]>> {
-    // The places are one entry too far. Filling moves each to its final value.
-    let mut first = vec![0_usize; corners + 2];
-    for &[a, ..] in triangles {
-        *first.get_mut(a as usize + 2)? += 1;
-    }
-    for v in 2..first.len() {
-        first[v] += first[v - 1];
-    }
-    let mut sorted = vec![[0; 3]; triangles.len()];
-    for triangle in triangles {
-        let place = &mut first[triangle[0] as usize + 1];
-        sorted[*place] = *triangle;
-        *place += 1;
-    }
-    for ends in first[..=corners].windows(2) {
+    let mut rows = Rows::by_key(
+        corners,
+        triangles.iter().map(|&triangle| (triangle[0], triangle)),
+    )?;
+    rows.each_mut(|row| match row {
         // Most vertices are the lowest of two triangles.
-        match &mut sorted[ends[0]..ends[1]] {
-            [] | [_] => {}
-            [one, other] => {
-                if one[1] > other[1] {
-                    std::mem::swap(one, other);
-                }
+        [] | [_] => {}
+        [one, other] => {
+            if one[1] > other[1] {
+                std::mem::swap(one, other);
             }
-            all => all.sort_unstable(),
         }
-    }
-    Some(sorted)
+        all => all.sort_unstable(),
+    });
+    Some(rows.into_items())
 }
 
 /// Whether the fourth corner of a face is above the first three; `None` if it is nearly in their plane.
 fn bends_upward(points: &[Vec3], corners: &[u32]) -> Option<bool> {
-    let at = |i: usize| points[corners[i] as usize].as_dvec3();
+    let at = |i: usize| points.at(corners[i]).as_dvec3();
     let [a, b, c] = [1, 2, 3].map(|i| at(i) - at(0));
     let normal: DVec3 = a.cross(b);
     let height = normal.dot(c);

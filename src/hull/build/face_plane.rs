@@ -5,6 +5,7 @@ use glam::{DVec3, Vec3};
 use super::area_vectors::AreaVector;
 use super::bends::Bends;
 use super::half_edge::{HalfEdge, HalfEdgeMesh};
+use crate::at::At;
 use crate::tolerance::FACE_FLATNESS;
 
 /// A supporting plane.
@@ -55,7 +56,7 @@ impl FacePlane {
     ) -> Self {
         let normal = polygon_normal(points, mesh, polygon).as_vec3();
         let direction = normal.as_dvec3();
-        let height = |v: u32| direction.dot(points[v as usize]);
+        let height = |v: u32| direction.dot(points.at(v));
         // No value is NaN here, so the NaN check of `f64::max` is not needed.
         let higher = |a: f64, b: f64| if a > b { a } else { b };
         let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -90,7 +91,7 @@ pub(super) fn polygon_normal(
     mesh: &HalfEdgeMesh<'_>,
     polygon: &[HalfEdge],
 ) -> DVec3 {
-    let at = |i: usize| points[mesh.start(polygon[i]) as usize];
+    let at = |i: usize| points.at(mesh.start(polygon[i]));
     let origin = at(0);
     let sum: DVec3 = (1..polygon.len() - 1)
         .map(|i| (at(i) - origin).cross(at(i + 1) - origin))

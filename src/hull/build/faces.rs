@@ -11,6 +11,7 @@ use super::face_plane::{FacePlane, polygon_normal};
 use super::flat_edges::NearlyFlatEdges;
 use super::half_edge::{HalfEdge, HalfEdgeMesh, triangle};
 use super::regions::CoplanarRegions;
+use crate::at::At;
 use crate::hull::faces::{BESIDE_LIKE, FaceRecord, Faces};
 use crate::hull::graph::FaceCorner;
 use crate::tolerance::{CLUSTER_ANGLE_COS, FACE_FLATNESS};
@@ -161,7 +162,7 @@ impl Builder<'_> {
         let plane = self.plane(polygon);
         let face = self.add_plane(&plane);
         for &t in triangles {
-            self.merged.face_of[t as usize] = face;
+            *self.merged.face_of.at_mut(t) = face;
         }
         let mesh = self.mesh;
         self.corners
@@ -205,7 +206,7 @@ impl Builder<'_> {
 fn is_convex(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, polygon: &[HalfEdge], radius: f64) -> bool {
     let normal = polygon_normal(points, mesh, polygon);
     let count = polygon.len();
-    let at = |i: usize| points[mesh.start(polygon[i % count]) as usize];
+    let at = |i: usize| points.at(mesh.start(polygon[i % count]));
     (0..count).all(|i| {
         let (before, here, after) = (at(i), at(i + 1), at(i + 2));
         let chord = after - before;

@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::area_vectors::AreaVectors;
 use super::half_edge::{HalfEdge, HalfEdgeMesh, triangle};
+use crate::at::At;
 use crate::tolerance::NEARLY_FLAT_COS;
 
 /// Edges at which a surface bends by less than four degrees, and edges of slivers.
@@ -28,8 +29,8 @@ impl NearlyFlatEdges {
             let [one, other] = beside.map(|t| &surface.triangles[t]);
             if one.is_within(NEARLY_FLAT_COS, other) || beside.into_iter().any(is_sliver) {
                 is_flat.resize(3 * mesh.triangles.len(), false);
-                is_flat[h as usize] = true;
-                is_flat[mesh.twin(h) as usize] = true;
+                *is_flat.at_mut(h) = true;
+                *is_flat.at_mut(mesh.twin(h)) = true;
             }
         }
         Self { is_flat }
@@ -41,6 +42,6 @@ impl NearlyFlatEdges {
 
     #[inline]
     pub fn contains(&self, h: HalfEdge) -> bool {
-        self.is_flat[h as usize]
+        self.is_flat.at(h)
     }
 }

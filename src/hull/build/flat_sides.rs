@@ -8,6 +8,7 @@
 use glam::DVec3;
 
 use super::half_edge::{HalfEdge, HalfEdgeMesh, next, triangle as triangle_of};
+use crate::at::At;
 use crate::tolerance::{BENT_EDGE, FLAT_EDGE, FLAT_SIDE};
 
 /// The triangles of a surface, in an order and with diagonals that depend only on its vertices. `None` if
@@ -61,18 +62,18 @@ impl<'a> Sides<'a> {
                 sides.add(t, &is_flat, &mut seen)?;
             }
         }
-        let all_bend = (0..half_edges as HalfEdge).all(|h| is_flat[h as usize] || sides.bends(h));
+        let all_bend = (0..half_edges as HalfEdge).all(|h| is_flat.at(h) || sides.bends(h));
         all_bend.then_some(sides)
     }
 
     fn along(&self, h: HalfEdge) -> DVec3 {
-        self.points[self.mesh.end(h) as usize] - self.points[self.mesh.start(h) as usize]
+        self.points.at(self.mesh.end(h)) - self.points.at(self.mesh.start(h))
     }
 
     /// Whether the surface hardly bends at an edge.
     fn is_flat(&self, h: HalfEdge) -> bool {
-        let from = self.points[self.mesh.start(h) as usize];
-        let third = |h| self.points[self.mesh.end(next(h)) as usize] - from;
+        let from = self.points.at(self.mesh.start(h));
+        let third = |h| self.points.at(self.mesh.end(next(h))) - from;
         let twin = self.mesh.twin(h);
         let (before, after) = (
             third(twin).cross(self.along(h)),
@@ -96,7 +97,7 @@ impl<'a> Sides<'a> {
             count += 1;
             for h in self.mesh.sides_of(t) {
                 let beside = triangle_of(self.mesh.twin(h));
-                if !is_flat[h as usize] {
+                if !is_flat.at(h) {
                     border.push(h);
                 } else if !std::mem::replace(&mut seen[beside], true) {
                     stack.push(beside);
@@ -117,7 +118,7 @@ impl<'a> Sides<'a> {
         let polygon: Vec<u32> = border.iter().map(|&h| self.mesh.start(h)).collect();
         let normal = side_normal(self.points, &polygon, self.radius)?;
         for (i, &h) in border.iter().enumerate() {
-            self.borders[h as usize] = SideBorder::new(self.points, &polygon, i, normal)?;
+            *self.borders.at_mut(h) = SideBorder::new(self.points, &polygon, i, normal)?;
         }
         self.polygons.push(polygon);
         Some(())
@@ -126,14 +127,14 @@ impl<'a> Sides<'a> {
     /// Sorts the border of a polygon counter-clockwise, starting from the lowest corner.
     fn sort(&mut self, border: &mut [HalfEdge]) -> Option<()> {
         for &h in &*border {
-            self.outgoing[self.mesh.start(h) as usize] = h;
+            *self.outgoing.at_mut(self.mesh.start(h)) = h;
         }
         let first = *border.iter().min_by_key(|&&h| self.mesh.start(h))?;
         let mut h = first;
         let count = border.len();
         for (i, place) in border.iter_mut().enumerate() {
             *place = h;
-            h = self.outgoing[self.mesh.end(h) as usize];
+            h = self.outgoing.at(self.mesh.end(h));
             // A border that touches itself comes back too early.
             if (h == first) != (i + 1 == count) {
                 return None;
@@ -144,15 +145,15 @@ impl<'a> Sides<'a> {
 
     /// Whether the surface bends between two polygons, however these are triangulated.
     fn bends(&self, h: HalfEdge) -> bool {
-        let [here, there] = [h, self.mesh.twin(h)].map(|h| self.borders[h as usize]);
+        let [here, there] = [h, self.mesh.twin(h)].map(|h| self.borders.at(h));
         here.bends(&there, self.radius)
     }
 }
 
 /// The normal of a polygon; `None` if it is not flat.
 pub(super) fn side_normal(points: &[DVec3], polygon: &[u32], radius: f64) -> Option<DVec3> {
-    let first = points[polygon[0] as usize];
-    let from_first = |v: u32| points[v as usize] - first;
+    let first = points.at(polygon[0]);
+    let from_first = |v: u32| points.at(v) - first;
     let fan = polygon[1..]
         .windows(2)
         .map(|ends| from_first(ends[0]).cross(from_first(ends[1])));
@@ -177,7 +178,7 @@ impl SideBorder {
     /// Along the edge that starts at a corner; `None` if the polygon is not strictly convex there.
     pub fn new(points: &[DVec3], polygon: &[u32], corner: usize, normal: DVec3) -> Option<Self> {
         let count = polygon.len();
-        let at = |i: usize| points[polygon[if i < count { i } else { i - count }] as usize];
+        let at = |i: usize| points.at(polygon[if i < count { i } else { i - count }]);
         let from = at(corner);
         let inward = normal.cross(at(corner + 1) - from).try_normalize()?;
         let beside = |i: usize| (at(i) - from).dot(inward);

@@ -2,6 +2,7 @@
 
 use std::mem;
 
+use crate::at::At;
 use crate::hull::HullError;
 use crate::hull::graph::FaceCorner;
 
@@ -76,7 +77,7 @@ impl<'a> HalfEdgeMesh<'a> {
 
     #[inline]
     pub fn start(&self, h: HalfEdge) -> u32 {
-        self.triangles.as_flattened()[h as usize]
+        self.triangles.as_flattened().at(h)
     }
 
     #[inline]
@@ -86,7 +87,7 @@ impl<'a> HalfEdgeMesh<'a> {
 
     #[inline]
     pub fn twin(&self, h: HalfEdge) -> HalfEdge {
-        self.twin[h as usize]
+        self.twin.at(h)
     }
 
     /// The sides that leave a vertex, clockwise: the triangle right of each is the one left of the next.
@@ -120,7 +121,7 @@ impl<'a> HalfEdgeMesh<'a> {
     pub fn corner(&self, side: HalfEdge) -> FaceCorner {
         FaceCorner {
             vertex: self.start(side) as u16,
-            slot: self.slots[side as usize],
+            slot: self.slots.at(side),
         }
     }
 
@@ -140,12 +141,12 @@ impl<'a> HalfEdgeMesh<'a> {
                 }
             }
             let mut place = lowest.1;
-            let mut side = unsorted[place as usize];
+            let mut side = unsorted.at(place);
             let (around, others) = mem::take(&mut sides).split_at_mut(count);
             sides = others;
             for (slot, sorted) in (0..).zip(around) {
                 let next = right[usize::from(side.to)];
-                let beside = unsorted[next as usize];
+                let beside = unsorted.at(next);
                 // Otherwise this was written for an earlier vertex, or never.
                 let is_beside = next >= start && beside.third == side.to;
                 if !is_beside || (slot > 0 && place == lowest.1) {
@@ -175,7 +176,7 @@ impl<'a> HalfEdgeMesh<'a> {
         while let Some(v) = stack.pop() {
             reached += 1;
             for side in self.outgoing(v) {
-                if !mem::replace(&mut seen[side.to as usize], true) {
+                if !mem::replace(&mut seen[usize::from(side.to)], true) {
                     stack.push(side.to.into());
                 }
             }
@@ -216,9 +217,9 @@ fn sides_by_start(triangles: &[[u32; 3]], first: &mut [u32]) -> Vec<DirectedEdge
     let ends = &mut first[1..];
     for (t, &[a, b, c]) in triangles.iter().enumerate().rev() {
         for (side, [from, to, third]) in [(2, [c, a, b]), (1, [b, c, a]), (0, [a, b, c])] {
-            let place = &mut ends[from as usize];
+            let place = ends.at_mut(from);
             *place -= 1;
-            sides[*place as usize] = DirectedEdge {
+            *sides.at_mut(*place) = DirectedEdge {
                 to: to as u16,
                 third: third as u16,
                 triangle: t as u16,

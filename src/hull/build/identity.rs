@@ -3,6 +3,8 @@
 use glam::Vec3;
 use parry3d::shape::ConvexPolyhedron;
 
+use crate::at::At;
+
 /// A hash of the points and edges of a polyhedron, which determine its hull.
 pub(crate) fn fingerprint(polyhedron: &ConvexPolyhedron) -> u64 {
     let mix = |hash: u64, word: u64| {
@@ -27,7 +29,7 @@ pub(crate) struct Diagonals(Box<[(u32, [u32; 2])]>);
 
 impl Diagonals {
     pub(super) fn of(polyhedron: &ConvexPolyhedron, ids: impl Iterator<Item = u32>) -> Self {
-        let ends = |id: u32| polyhedron.edges()[id as usize].vertices;
+        let ends = |id: u32| polyhedron.edges().at(id).vertices;
         Self(ids.map(|id| (id, ends(id))).collect())
     }
 

@@ -1,6 +1,7 @@
 //! The order of a hull's vertices in memory. A step of a climb reads all neighbours of a vertex. In the order
 //! in which hull builders number them, each neighbour is on another cache line.
 
+use crate::at::At;
 use glam::Vec3;
 
 /// Bits per coordinate. This makes about a thousand cells along an axis, along which a hull has at most a few
@@ -18,19 +19,19 @@ pub(in crate::hull) fn morton_order(
     let high = points.iter().copied().reduce(Vec3::max).unwrap_or_default();
     let cells = (1 << BITS) as f32 / (high - low).max_element();
     let mut order: Vec<u32> = (0..points.len() as u32).collect();
-    order.sort_by_cached_key(|&v| morton_code((points[v as usize] - low) * cells));
+    order.sort_by_cached_key(|&v| morton_code((points.at(v) - low) * cells));
     let mut number = vec![0; points.len()];
     for (new, &old) in (0..).zip(&order) {
-        number[old as usize] = new;
+        *number.at_mut(old) = new;
     }
     let renumbered = triangles.iter().map(|triangle| {
-        let [a, b, c] = triangle.map(|v| number[v as usize]);
+        let [a, b, c] = triangle.map(|v| number.at(v));
         // The same triangle, starting at its lowest corner.
         [[a, b, c], [b, c, a], [c, a, b]].into_iter().min()
     });
     let mut triangles: Vec<[u32; 3]> = renumbered.flatten().collect();
     triangles.sort_unstable();
-    let points = order.iter().map(|&v| points[v as usize]).collect();
+    let points = order.iter().map(|&v| points.at(v)).collect();
     (points, triangles)
 }
 
@@ -60,7 +61,7 @@ mod tests {
     }
 
     fn corners(points: &[Vec3], triangles: &[[u32; 3]]) -> BTreeSet<[[u32; 3]; 3]> {
-        let bits = |v: u32| points[v as usize].to_array().map(f32::to_bits);
+        let bits = |v: u32| points.at(v).to_array().map(f32::to_bits);
         let turned = triangles.iter().map(|t| {
             let [a, b, c] = t.map(bits);
             [[a, b, c], [b, c, a], [c, a, b]].into_iter().min()

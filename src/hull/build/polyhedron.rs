@@ -13,6 +13,8 @@ use super::face_loops::{FaceTriangles, has_flat_sides, triangles_of_flat_sides};
 use super::flat_sides;
 use super::identity::Diagonals;
 use super::validate::MAX_VERTICES;
+use crate::at::At;
+use crate::hull::lists::Rows;
 use crate::hull::{Hull, HullError};
 use crate::tolerance::FLAT_EDGE;
 
@@ -140,18 +142,13 @@ impl Triangulation {
         }
         let (inside, radius) = around_middle(points);
         let flatness = FLAT_EDGE * radius;
-        let (first, rows) = edge_rows(points.len(), polyhedron);
+        let edges = edges_at_vertices(points.len(), polyhedron)?;
         let mut triangles = Vec::with_capacity(2 * points.len());
         let mut flat_edges = Vec::new();
         let mut incident = Vec::new();
-        for (v, ends) in (0..).zip(first.windows(2)) {
+        for (v, edges) in (0..).zip(edges.rows()) {
             incident.clear();
-            incident.extend(incident_edges(
-                polyhedron,
-                &rows[ends[0]..ends[1]],
-                v,
-                inside,
-            )?);
+            incident.extend(incident_edges(polyhedron, edges, v, inside)?);
             incident.sort_unstable_by(|a, b| by_angle(a.seen, b.seen));
             for (i, side) in incident.iter().enumerate() {
                 let next = &incident[(i + 1) % incident.len()];
@@ -191,14 +188,14 @@ fn incident_edges(
     vertex: u32,
     inside: DVec3,
 ) -> Option<impl Iterator<Item = IncidentEdge>> {
-    let at = |vertex: u32| polyhedron.points()[vertex as usize].as_dvec3();
+    let at = |vertex: u32| polyhedron.points().at(vertex).as_dvec3();
     let here = at(vertex);
     let outward = (here - inside).try_normalize()?;
     let (x, y) = outward.any_orthonormal_pair();
     // These turn counter-clockwise about `outward`.
     let y = if x.cross(y).dot(outward) > 0.0 { y } else { -y };
     Some(row.iter().map(move |&id| {
-        let [a, b] = polyhedron.edges()[id as usize].vertices;
+        let [a, b] = polyhedron.edges().at(id).vertices;
         let end = a ^ b ^ vertex;
         let edge = at(end) - here;
         IncidentEdge {
@@ -217,26 +214,13 @@ fn is_flat([last, edge, next]: [DVec3; 3], height: f64) -> bool {
     before.dot(next).abs() <= height * area
 }
 
-/// The edges at each vertex, in compressed rows.
-fn edge_rows(count: usize, polyhedron: &ConvexPolyhedron) -> (Vec<usize>, Vec<u32>) {
-    let mut first = vec![0; count + 1];
-    for edge in polyhedron.edges() {
-        for v in edge.vertices {
-            first[v as usize + 1] += 1;
-        }
-    }
-    for v in 0..count {
-        first[v + 1] += first[v];
-    }
-    let mut fill = first.clone();
-    let mut rows = vec![0; first[count]];
-    for (id, edge) in polyhedron.edges().iter().enumerate() {
-        for v in edge.vertices {
-            rows[fill[v as usize]] = id as u32;
-            fill[v as usize] += 1;
-        }
-    }
-    (first, rows)
+/// The edges at each vertex.
+fn edges_at_vertices(count: usize, polyhedron: &ConvexPolyhedron) -> Option<Rows<u32>> {
+    let edges = (0..).zip(polyhedron.edges());
+    Rows::by_key(
+        count,
+        edges.flat_map(|(id, edge)| edge.vertices.map(|vertex| (vertex, id))),
+    )
 }
 
 /// Counter-clockwise from the positive x axis.

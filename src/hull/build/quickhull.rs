@@ -9,6 +9,7 @@ use glam::{DVec3, Vec3};
 
 use super::orientation::height_over;
 use super::validate::MAX_VERTICES;
+use crate::at::At;
 use crate::hull::HullError;
 
 /// The corners of the hull in the order of the points, and its triangles, counter-clockwise from outside.
@@ -31,7 +32,7 @@ pub(super) fn convex_hull(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>),
         names[corner] = name as u32;
     }
     let facets = surface.facets.iter().filter(|facet| !facet.is_removed);
-    let named = |facet: &HullFacet| facet.vertices.map(|v| names[v as usize]);
+    let named = |facet: &HullFacet| facet.vertices.map(|v| names.at(v));
     Ok((vertices, facets.map(named).collect()))
 }
 
@@ -113,7 +114,7 @@ impl<'a> GrowingHull<'a> {
     }
 
     fn height(&self, facet: u32, point: u32) -> f64 {
-        let at = |v: u32| self.points[v as usize];
+        let at = |v: u32| self.points.at(v);
         height_over(self.facet(facet).vertices.map(at), at(point))
     }
 
@@ -126,7 +127,7 @@ impl<'a> GrowingHull<'a> {
     }
 
     fn facet_mut(&mut self, id: u32) -> &mut HullFacet {
-        &mut self.facets[id as usize]
+        self.facets.at_mut(id)
     }
 
     /// Assigns a point to the first facet, from `first` on, that it is above, if there is one.
@@ -134,10 +135,10 @@ impl<'a> GrowingHull<'a> {
         for facet in first..self.facet_count() {
             let height = self.height(facet, point);
             if height > 0.0 {
-                let facet = &mut self.facets[facet as usize];
+                let facet = self.facets.at_mut(facet);
                 facet.above.push(point);
                 // Among points in a plane, the first and last in coordinate order are corners.
-                let place = |v: u32| self.points[v as usize].to_array();
+                let place = |v: u32| self.points.at(v).to_array();
                 let is_as_high = height == facet.peak.0 && place(point) > place(facet.peak.1);
                 if height > facet.peak.0 || is_as_high {
                     facet.peak = (height, point);
@@ -216,13 +217,13 @@ impl<'a> GrowingHull<'a> {
         for (id, edge) in (first..).zip(horizon) {
             let facet = HullFacet::new([edge.from, edge.to, eye], [edge.beyond, 0, 0]);
             self.facets.push(facet);
-            self.starting_at[edge.from as usize] = id;
+            *self.starting_at.at_mut(edge.from) = id;
             let other = self.facet_mut(edge.beyond);
             let side = other.vertices.iter().position(|&v| v == edge.to);
             other.beyond[side.expect("it has this edge")] = id;
         }
         for (id, edge) in (first..).zip(horizon) {
-            let next = self.starting_at[edge.to as usize];
+            let next = self.starting_at.at(edge.to);
             self.facet_mut(id).beyond[1] = next;
             self.facet_mut(next).beyond[2] = id;
         }
@@ -240,7 +241,7 @@ impl<'a> GrowingHull<'a> {
                 let across = self.facet(other).vertices;
                 let third = across.into_iter().find(|v| !ends.contains(v));
                 if self.height(id, third.expect("it shares only two")) < 0.0 {
-                    ends.iter().for_each(|&v| bends[v as usize] += 1);
+                    ends.iter().for_each(|&v| *bends.at_mut(v) += 1);
                 }
             }
         }

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::area_vectors::AreaVectors;
 use super::flat_edges::NearlyFlatEdges;
 use super::half_edge::{HalfEdge, HalfEdgeMesh, next, triangle};
+use crate::at::At;
 use crate::hull::lists::largest_first;
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS};
 
@@ -42,16 +43,16 @@ impl CoplanarRegions {
                 // The normal of a sliver is mere rounding, so its neighbours decide.
                 let triangle = &surface.triangles[t];
                 let turned = normal.dot(triangle.vector) < FACE_ANGLE_COS * triangle.area;
-                let height = |v: u32| normal.dot(points[v as usize] - center);
+                let height = |v: u32| normal.dot(points.at(v) - center);
                 let is_near = |&v: &u32| height(v).abs() <= FACE_FLATNESS * radius;
                 (!turned || surface.is_sliver(points, mesh.triangles, t, radius))
                     && mesh.triangles[t].iter().all(is_near)
             }
         };
         let is_beside = |t: &u32| (3 * t..3 * t + 3).any(|side| flat.contains(side));
-        let area = |t: u32| surface.triangles[t as usize].area;
+        let area = |t: u32| surface.triangles.at(t).area;
         for seed in largest_first((0..count as u32).filter(is_beside), area) {
-            if regions.of[seed as usize] != FREE {
+            if regions.of.at(seed) != FREE {
                 continue;
             }
             regions.add(mesh, flat, seed, joins(&[seed]));
@@ -92,7 +93,7 @@ impl CoplanarRegions {
     ) {
         let region = self.next_id();
         let mut at = self.triangles.len();
-        self.of[seed as usize] = region;
+        *self.of.at_mut(seed) = region;
         self.triangles.push(seed);
         while let Some(&t) = self.triangles.get(at) {
             for side in 3 * t..3 * t + 3 {
@@ -117,7 +118,7 @@ impl CoplanarRegions {
         self.first.pop();
         let found = self.triangles.split_off(start);
         for &t in &found {
-            self.of[t as usize] = FREE;
+            *self.of.at_mut(t) = FREE;
         }
         Some(found)
     }
@@ -175,9 +176,9 @@ fn plane(
 ) -> (DVec3, DVec3) {
     let (mut normal, mut moment, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for &t in some {
-        let [a, b, c] = triangles[t as usize].map(|v| points[v as usize]);
-        let weight = surface.triangles[t as usize].area;
-        normal += surface.triangles[t as usize].vector;
+        let [a, b, c] = triangles.at(t).map(|v| points.at(v));
+        let weight = surface.triangles.at(t).area;
+        normal += surface.triangles.at(t).vector;
         moment += (a + b + c) * (weight / 3.0);
         area += weight;
     }

@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::area_vectors::{AreaVectors, longest_side};
+use crate::at::At;
 use crate::hull::HullError;
 use crate::hull::climb::{self, HillClimb};
 use crate::hull::faces::Faces;
@@ -37,7 +38,7 @@ pub(super) fn validate_distinct(points: &[Vec3]) -> Result<(), HullError> {
     for (i, point) in points.iter().enumerate() {
         let mut place = hash(*point) & mask;
         while table[place] != NOTHING {
-            if points[table[place] as usize] == *point {
+            if points.at(table[place]) == *point {
                 return Err(HullError::DuplicateVertex(i));
             }
             place = (place + 1) & mask;
@@ -121,7 +122,7 @@ pub(super) fn validate_single_layer(
     let quadrants: Vec<u8> = points.iter().map(seen_from_ray).collect();
     let (mut crossings, mut some_inward) = (0, false);
     for (triangle, vector) in triangles.iter().zip(&surface.triangles) {
-        let outward = vector.vector.dot(points[triangle[0] as usize] - center);
+        let outward = vector.vector.dot(points.at(triangle[0]) - center);
         if outward <= 0.0 {
             some_inward = true;
             let height = MAX_INWARD_HEIGHT * radius;
@@ -130,9 +131,9 @@ pub(super) fn validate_single_layer(
                 return Err(HullError::NotConvex(triangle[0] as usize));
             }
         }
-        let [a, b, c] = triangle.map(|v| quadrants[v as usize]);
+        let [a, b, c] = triangle.map(|v| quadrants.at(v));
         // A triangle on one side of a plane through the ray does not meet it.
-        if a & b & c == 0 && meets_ray(triangle.map(|v| points[v as usize] - center)) {
+        if a & b & c == 0 && meets_ray(triangle.map(|v| points.at(v) - center)) {
             crossings += 1;
             if crossings > 1 {
                 return Err(HullError::NotConvex(triangle[0] as usize));

@@ -9,6 +9,7 @@ use parry3d::math::Pose;
 use parry3d::query::PersistentQueryDispatcher;
 use parry3d::shape::{Compound, Shape};
 
+use crate::at::At;
 use crate::parry::composite::seams::Seams;
 use crate::parry::composite::sub_manifolds::{SubManifolds, SubShape};
 use crate::parry::operand::Operand;
@@ -32,7 +33,7 @@ pub(crate) fn compounds<M, C, F>(
     let seams_2 = Seams::near(c2, &whole_1);
     for i in c1.bvh().intersect_aabb(&whole_2) {
         let part_1 = part(c1, &seams_1, i);
-        let near_1 = c1.aabbs()[i as usize].loosened(sub_manifolds.prediction);
+        let near_1 = c1.aabbs().at(i).loosened(sub_manifolds.prediction);
         let pos_part1_2 = part_1.pos.map_or(*pos12, |pos| pos.inv_mul(pos12));
         for k in c2.bvh().intersect_aabb(&near_1.transform_by(&pos21)) {
             // Boxes around rotated boxes are large. With the compounds exchanged, many of them are apart.
@@ -69,7 +70,7 @@ pub(crate) fn compound_and_convex<M, C, F>(
 }
 
 fn box_in(compound: &Compound, part: u32, pose: &Pose) -> Aabb {
-    compound.aabbs()[part as usize].transform_by(pose)
+    compound.aabbs().at(part).transform_by(pose)
 }
 
 fn part<'a>(compound: &'a Compound, seams: &'a Seams<'_>, id: u32) -> SubShape<'a> {
