@@ -1,8 +1,9 @@
 //! Imports between modules run one way, by the `use` declarations outside of tests.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
 
-use crate::files;
+use crate::{files, root};
 
 /// The names of a module, from the root on.
 type Module = Vec<String>;
@@ -150,5 +151,23 @@ fn children_do_not_import_from_their_folder() {
             "{} imports from {folder}",
             module.join("::")
         );
+    }
+}
+
+/// The first table of `ARCHITECTURE.md` lists the modules from the bottom to the top.
+#[test]
+fn modules_use_only_those_above_them() {
+    let map = fs::read_to_string(root("ARCHITECTURE.md")).expect("a map");
+    let table = map.lines().skip_while(|line| !line.starts_with('|'));
+    let rows = table.take_while(|line| line.starts_with('|'));
+    let names = rows.flat_map(|row| row.split('|').nth(1).unwrap_or_default().split('`'));
+    let order: Vec<&str> = names.collect();
+    let place = |name: &str| {
+        let place = order.iter().position(|listed| *listed == name);
+        place.unwrap_or_else(|| panic!("`{name}` is not in the table"))
+    };
+    let imports = Imports::read();
+    for (user, used) in &siblings(&imports)[&[][..]] {
+        assert!(place(used) < place(user), "`{user}` uses `{used}`");
     }
 }

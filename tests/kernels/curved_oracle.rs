@@ -172,10 +172,10 @@ fn bodies(rng: &mut Rng) -> Vec<Body> {
 fn brackets_are_narrow_and_the_same_in_either_order() {
     let mut rng = Rng::new(6);
     let (mut pairs, mut wide) = (0, 0);
-    for _ in 0..3 {
+    for _ in 0..2 {
         let all = bodies(&mut rng);
-        for a in &all {
-            for b in &all {
+        for (i, a) in all.iter().enumerate() {
+            for b in &all[i..] {
                 for meeting in Meeting::ALL {
                     for gap in [0.05, 1.0e-6, -0.02, -0.2] {
                         let size = a.diameter().min(b.diameter());
