@@ -1,4 +1,4 @@
-//! Grows face clusters, when the first of a hull is looked up.
+//! Grows the face clusters of a hull, when the first of them is looked up.
 
 use glam::{DVec2, DVec3, Vec3};
 

@@ -37,8 +37,8 @@ impl FaceClusters {
             + self.outlines.heap_bytes()
     }
 
-    /// Adds a cluster of some of `faces` faces: its members, the other faces under its outline, and the corners
-    /// of that.
+    /// Adds a cluster of a hull with `faces` faces: its members, the other faces covered by its outline, and
+    /// the corners of the outline.
     pub fn push(
         &mut self,
         faces: usize,

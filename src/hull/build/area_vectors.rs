@@ -41,7 +41,7 @@ impl AreaVectors {
             };
             let (a, b, c) = (corner(0), corner(1), corner(2));
             let vector = push_four(&mut vectors, [a, b, c], count);
-            // Those that only fill up the last four span no volume.
+            // Triangles that only fill up the last four span no volume.
             let (a, b, c) = (a - origin, b - origin, c - origin);
             let inside = vector.dot_each(a) * f64x4::new(COUNTED[count]);
             volume += inside;

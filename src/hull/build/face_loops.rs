@@ -1,5 +1,5 @@
-//! The triangles of parry's polyhedron as its faces tell them. parry merges triangles into faces, but lists the
-//! edges within a face, too.
+//! The triangles of parry's polyhedron, from its faces. parry merges triangles into faces, but also lists the
+//! edges within a face.
 
 use std::ops::Range;
 
@@ -11,15 +11,15 @@ use crate::at::At;
 use crate::hull::lists::Rows;
 use crate::tuning::SEEMS_FLAT;
 
-/// The triangles of a polyhedron whose faces are its flat sides, with diagonals that depend only on its points, in
-/// the order of their corners. `None` for others.
+/// The triangles of a polyhedron whose faces are its flat sides, with diagonals that depend only on its
+/// points, in the order of their corners. `None` for others.
 pub(super) fn triangles_of_flat_sides(
     polyhedron: &ConvexPolyhedron,
     points: &[DVec3],
     radius: f64,
 ) -> Option<Vec<[u32; 3]>> {
     let mut triangles = Vec::with_capacity((2 * points.len()).checked_sub(4)?);
-    // What the first of the two sides along each edge looks like.
+    // The border of the first of the two sides along each edge.
     let mut borders: Vec<Option<SideBorder>> = vec![None; polyhedron.edges().len()];
     let mut open = 0_usize;
     let mut polygon = Vec::new();
@@ -114,8 +114,7 @@ impl FaceTriangles {
     }
 }
 
-/// Triangles in the order of their corners: a counting sort by the first one, of so many. `None` if there is no
-/// such corner.
+/// Triangles in the order of their corners. `None` if a first corner is not below `corners`.
 fn sorted(triangles: &[[u32; 3]], corners: usize) -> Option<Vec<[u32; 3]>> {
     let mut rows = Rows::by_key(
         corners,

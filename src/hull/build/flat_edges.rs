@@ -1,4 +1,4 @@
-//! Which edges of a surface are nearly flat. Faces are merged only over these, and most hulls have few of them.
+//! The nearly flat edges of a surface. Faces are merged only over these, and most hulls have few of them.
 
 use glam::DVec3;
 
@@ -14,7 +14,7 @@ pub(super) struct NearlyFlatEdges {
 }
 
 impl NearlyFlatEdges {
-    /// Those among some edges.
+    /// The nearly flat edges among some edges.
     pub fn among(
         edges: &[HalfEdge],
         points: &[DVec3],

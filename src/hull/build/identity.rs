@@ -1,4 +1,4 @@
-//! How a polyhedron is recognised from which a hull was built.
+//! Recognises the polyhedron from which a hull was built.
 
 use glam::Vec3;
 use parry3d::shape::ConvexPolyhedron;

@@ -1,8 +1,9 @@
 //! The triangulated surface behind parry's convex polyhedron.
 //!
 //! parry merges triangles up to 1.5 degrees apart, but it still lists all edges of the triangulation, so the
-//! faces mostly yield it (`face_loops`). Where they miss vertices, only the edges do: seen from a point inside,
-//! the edges around a vertex have a cyclic order, and successive edges in that order span the triangles.
+//! faces usually yield it (`face_loops`). If they miss vertices, only the edges yield it: seen from a point
+//! inside, the edges around a vertex have a cyclic order, and successive edges in that order span the
+//! triangles.
 
 use std::cmp::Ordering;
 
@@ -46,7 +47,7 @@ pub(crate) fn hull_and_diagonals(
     }
 }
 
-/// The same without a detour over the points: `None` if the surface is no convex triangulation of them.
+/// The same from the surface alone: `None` if that is not a convex triangulation of the points.
 pub(crate) fn hull_of_surface(polyhedron: &ConvexPolyhedron) -> Option<(Hull, Diagonals)> {
     let points = polyhedron.points();
     if has_flat_sides(polyhedron)
