@@ -128,7 +128,7 @@ fn sorted(triangles: &[[u32; 3]], corners: usize) -> Option<Vec<[u32; 3]>> {
                 std::mem::swap(one, other);
             }
         }
-        all => all.sort_unstable(),
+        all => all.sort_unstable_by_key(|&[_, b, c]| u64::from(b) << 32 | u64::from(c)),
     });
     Some(rows.into_items())
 }

@@ -5,19 +5,17 @@ use parry3d::shape::ConvexPolyhedron;
 
 use crate::at::At;
 
-/// A hash of the points and edges of a polyhedron, which determine its hull.
+/// A hash of the points of a polyhedron. Polyhedra with the same points seldom have other edges.
 pub(crate) fn fingerprint(polyhedron: &ConvexPolyhedron) -> u64 {
-    let mix = |hash: u64, word: u64| {
-        let mixed = (hash ^ word).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let mix = |hash: u64, words: [u32; 2]| {
+        let [low, high] = words.map(u64::from);
+        let mixed = (hash ^ low ^ high << 32).wrapping_mul(0x9E37_79B9_7F4A_7C15);
         mixed ^ mixed >> 32
     };
     let coordinates = bytemuck::cast_slice::<Vec3, u32>(polyhedron.points());
-    let points = coordinates.iter().map(|&bits| u64::from(bits));
-    let edges = polyhedron.edges().iter().map(|edge| {
-        let [a, b] = edge.vertices.map(u64::from);
-        a << 32 | b
-    });
-    points.chain(edges).fold(0, mix)
+    let (pairs, rest) = coordinates.as_chunks();
+    let last = rest.first().map(|&bits| [bits, 0]);
+    pairs.iter().copied().chain(last).fold(0, mix)
 }
 
 /// The edges that a hull depends on besides its points: their ids and their ends.

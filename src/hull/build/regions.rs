@@ -18,6 +18,15 @@ pub(super) struct CoplanarRegions {
     of: Vec<u32>,
 }
 
+/// How far a region has grown.
+#[derive(PartialEq)]
+enum Grown {
+    /// Over all flat edges.
+    Fully,
+    /// Up to triangles beyond flat edges that are not in its plane.
+    UpToOthers,
+}
+
 /// In no region: alone, or not yet.
 const FREE: u32 = u32::MAX;
 
@@ -34,8 +43,7 @@ impl CoplanarRegions {
         if flat.is_empty() {
             return Self::alone(0);
         }
-        let count = mesh.triangles.len();
-        let mut regions = Self::alone(count);
+        let mut regions = Self::alone(mesh.triangles.len());
         // Whether a triangle lies in the plane of some others.
         let joins = |some: &[u32]| {
             let (normal, center) = plane(points, mesh.triangles, surface, some);
@@ -50,15 +58,16 @@ impl CoplanarRegions {
             }
         };
         let is_beside = |t: &u32| (3 * t..3 * t + 3).any(|side| flat.contains(side));
-        let area = |t: u32| surface.triangles.at(t).area;
-        for seed in largest_first((0..count as u32).filter(is_beside), area) {
+        let seeds = (0..regions.of.len() as u32).filter(is_beside);
+        for seed in largest_first(seeds, |t| surface.triangles.at(t).area) {
             if regions.of.at(seed) != FREE {
                 continue;
             }
-            regions.add(mesh, flat, seed, joins(&[seed]));
             // The corners of a small triangle are rounded, so its plane misses the far end of a large side.
             // The plane of all triangles found so far does not.
-            if let Some(found) = regions.take_back() {
+            if regions.add(mesh, flat, seed, joins(&[seed])) == Grown::UpToOthers
+                && let Some(found) = regions.take_back()
+            {
                 regions.add(mesh, flat, seed, joins(&found));
             }
         }
@@ -90,22 +99,29 @@ impl CoplanarRegions {
         flat: &NearlyFlatEdges,
         seed: u32,
         joins: impl Fn(usize) -> bool,
-    ) {
+    ) -> Grown {
         let region = self.next_id();
+        let mut grown = Grown::Fully;
         let mut at = self.triangles.len();
         *self.of.at_mut(seed) = region;
         self.triangles.push(seed);
         while let Some(&t) = self.triangles.get(at) {
             for side in 3 * t..3 * t + 3 {
                 let other = triangle(mesh.twin(side));
-                if flat.contains(side) && self.of[other] == FREE && joins(other) {
+                if !flat.contains(side) || self.of[other] != FREE {
+                    continue;
+                }
+                if joins(other) {
                     self.of[other] = region;
                     self.triangles.push(other as u32);
+                } else {
+                    grown = Grown::UpToOthers;
                 }
             }
             at += 1;
         }
         self.first.push(self.triangles.len());
+        grown
     }
 
     /// Dissolves the last region, unless it is only its seed.
