@@ -108,10 +108,10 @@ pub trait Polytope: Support {
     /// The `i`-th vertex of a face, counter-clockwise seen from outside.
     fn face_vertex(&self, face: FaceId, i: usize) -> VertexId;
 
-    /// Some corners of a face, in f32.
+    /// The corners of a face in f32, by their numbers.
     #[inline(always)]
-    fn face_points_at<const N: usize>(&self, face: FaceId, numbers: [usize; N]) -> [Vec3; N] {
-        numbers.map(|i| self.vertex(self.face_vertex(face, i)).as_vec3())
+    fn face_corners(&self, face: FaceId) -> impl Fn(usize) -> Vec3 + Copy {
+        move |i| self.vertex(self.face_vertex(face, i)).as_vec3()
     }
 
     /// How far inside a face a point of its plane is, negative outside, if this costs less than a look at its

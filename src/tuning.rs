@@ -33,6 +33,9 @@ pub(crate) const WIDE_CAP: f64 = 0.25;
 /// [`KEPT_DRIFT`](crate::tolerance::KEPT_DRIFT).
 pub(crate) const STILL: f64 = 2e-3;
 
+/// Of a face with more sides than this, the one in some direction is found by halving.
+pub(crate) const MANY_SIDES: usize = 8;
+
 /// Contacts tie for the deepest if their distances differ by less than this share of the tolerance of a depth.
 /// Three that tie, and a far one, leave the place between them within the tolerance.
 pub(crate) const FLUSH_TIE: f64 = 0.25;

@@ -230,9 +230,9 @@ impl Polytope for Hull {
     }
 
     #[inline(always)]
-    fn face_points_at<const N: usize>(&self, face: FaceId, numbers: [usize; N]) -> [Vec3; N] {
-        let polygon = self.faces.polygon(face);
-        numbers.map(|i| self.points[usize::from(polygon[i].vertex)])
+    fn face_corners(&self, face: FaceId) -> impl Fn(usize) -> Vec3 + Copy {
+        let (points, polygon) = (&*self.points, self.faces.polygon(face));
+        move |i| points[usize::from(polygon[i].vertex)]
     }
 
     #[inline]

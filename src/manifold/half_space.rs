@@ -139,7 +139,7 @@ fn push_spread(
     let count = shape.face_len(polygon);
     let plane = frame.projection();
     window.set(count, |numbers| {
-        plane.flatten(shape.face_points_at(polygon, numbers))
+        plane.flatten(numbers.map(shape.face_corners(polygon)))
     });
     corners.set(window);
     let distances = |row: usize, _, _| {

@@ -128,10 +128,10 @@ impl<'s> SurfacePair<'s> {
         let (shape_1, shape_2) = (cso.shape_1, cso.shape_2);
         let [projection_1, projection_2] = &self.projections;
         clipper.window.set(shape_1.face_len(f1), |numbers| {
-            projection_1.flatten(shape_1.face_points_at(f1, numbers))
+            projection_1.flatten(numbers.map(shape_1.face_corners(f1)))
         });
         clipper.subject.set(shape_2.face_len(f2), |numbers| {
-            projection_2.flatten(shape_2.face_points_at(f2, numbers))
+            projection_2.flatten(numbers.map(shape_2.face_corners(f2)))
         });
         clipper.intersect();
     }

@@ -137,8 +137,13 @@ pub(crate) struct FullWithHull;
 
 impl<B: HullPartner> Strategy<Hull, B> for FullWithHull {
     #[inline]
-    fn certify(self, query: &mut Query<'_, '_, Hull, B>, features: [Feature; 2]) -> Verdict {
-        Full.certify(query, features)
+    fn certify(
+        self,
+        query: &mut Query<'_, '_, Hull, B>,
+        features: [Feature; 2],
+        flush: impl FnOnce() -> Option<FlushFaces>,
+    ) -> Verdict {
+        Full.certify(query, features, flush)
     }
 
     #[inline]

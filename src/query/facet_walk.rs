@@ -41,15 +41,19 @@ struct FacetWalk<'f> {
 type NextFacet = (Option<[Feature; 2]>, [[VertexId; 2]; 2]);
 
 impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
-    /// Re-evaluates the facet that `features` span.
+    /// Re-evaluates the facet that `features` span. If the faces in contact lie `flush`, these may prove it.
     #[inline(always)]
-    pub(super) fn certify(&mut self, features: [Feature; 2]) -> Verdict {
-        let (max, tolerance) = (self.max_distance, self.tolerance());
-        facet::certify(self.cso, features, max, tolerance, self.cost)
+    pub(super) fn certify(
+        &mut self,
+        features: [Feature; 2],
+        flush: impl FnOnce() -> Option<FlushFaces>,
+    ) -> Verdict {
+        let limits = [self.max_distance, self.tolerance()];
+        facet::certify(self.cso, features, flush, limits, self.cost)
     }
 
-    /// Answers with the facet of a remembered contact if its `verdict` allows that, or with flush faces.
-    /// Otherwise walks on from there.
+    /// Answers with the facet of a remembered contact if its `verdict` allows that. Otherwise walks on from there.
+    /// The `flush` faces may prove its depth.
     pub(super) fn start_walk_from_features(
         &mut self,
         normal: DVec3,
@@ -57,9 +61,6 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         verdict: &Verdict,
         flush: Option<&FlushFaces>,
     ) -> Found {
-        if let Some(near) = flush.and_then(|flush| self.certify_flush(features, flush)) {
-            return Some((Answer::Near(near), Stage::Feature));
-        }
         let mut walk = self.start_walk(normal, features, Stage::Feature, Start::Warm);
         walk.flush = flush;
         match self.step(verdict, &mut walk) {
@@ -98,7 +99,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
 
     fn run_walk(&mut self, mut walk: FacetWalk<'_>) -> Found {
         loop {
-            let verdict = self.certify(walk.features);
+            let verdict = self.certify(walk.features, || None);
             if let ControlFlow::Break(found) = self.step(&verdict, &mut walk) {
                 return found;
             }

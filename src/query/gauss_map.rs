@@ -198,8 +198,13 @@ pub(super) mod tests {
             let mut features =
                 facet_at_vertex(&cso, &vertex, normal).expect("the origin is beside");
             for _ in 0..20 {
-                let verdict =
-                    facet::certify(&cso, features, f64::INFINITY, 1e-6, &mut Cost::default());
+                let verdict = facet::certify(
+                    &cso,
+                    features,
+                    || None,
+                    [f64::INFINITY, 1e-6],
+                    &mut Cost::default(),
+                );
                 let side = match verdict {
                     Verdict::OutsideEdge(side) => side,
                     Verdict::Certified(_) | Verdict::Undecided(..) => break,

@@ -46,6 +46,7 @@ impl LastContacts {
     }
 
     /// The mean of the points on shape 1.
+    #[inline]
     pub fn middle(&self) -> DVec3 {
         self.on_1.sum() / LANES as f64
     }

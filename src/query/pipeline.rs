@@ -61,8 +61,13 @@ pub(crate) type Found = Option<(Answer, Stage)>;
 pub(crate) trait Strategy<A: Support, B: Support>: Copy {
     /// Re-evaluates features that were in contact. Shapes without faces have none.
     #[inline(always)]
-    fn certify(self, query: &mut Query<'_, '_, A, B>, features: [Feature; 2]) -> Verdict {
-        let _ = (query, features);
+    fn certify(
+        self,
+        query: &mut Query<'_, '_, A, B>,
+        features: [Feature; 2],
+        flush: impl FnOnce() -> Option<FlushFaces>,
+    ) -> Verdict {
+        let _ = (query, features, flush);
         Verdict::Degenerate
     }
 
@@ -95,8 +100,13 @@ pub(crate) struct Full;
 
 impl<A: Polytope, B: Polytope> Strategy<A, B> for Full {
     #[inline(always)]
-    fn certify(self, query: &mut Query<'_, '_, A, B>, features: [Feature; 2]) -> Verdict {
-        query.certify(features)
+    fn certify(
+        self,
+        query: &mut Query<'_, '_, A, B>,
+        features: [Feature; 2],
+        flush: impl FnOnce() -> Option<FlushFaces>,
+    ) -> Verdict {
+        query.certify(features, flush)
     }
 
     fn start_from_features(
@@ -187,7 +197,7 @@ impl<A: Support, B: Support> Query<'_, '_, A, B> {
                 }
             },
             PairMemory::Contact(normal, features) => {
-                let verdict = strategy.certify(self, features);
+                let verdict = strategy.certify(self, features, || sink.flush_faces());
                 if let Verdict::Certified(near) = &verdict {
                     sink.near(near);
                     return Some(Stage::Feature);

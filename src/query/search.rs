@@ -110,7 +110,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             inset,
         };
         debug_assert!(known.depth >= 0.0, "they do not overlap: {candidate:?}");
-        if flush.is_some_and(|flush| self.is_depth(candidate, flush)) {
+        if flush.is_some_and(|flush| flush.is_depth(self.cso, candidate)) {
             return Some((Answer::Near(*candidate), stage));
         }
         if let Some((cache, key)) = &mut self.polytope_cache

@@ -264,3 +264,34 @@ fn flush_faces_do_not_hide_a_shallower_way_out() {
         }
     }
 }
+
+/// The corners of equal prisms lie on the rims of both, and drift to either side: flush faces prove the depth all the
+/// same.
+#[test]
+fn flush_faces_prove_depths_on_their_rims() {
+    const FRAMES: usize = 60;
+    for sides in [4, 16, 64] {
+        let dispatcher = IsaGjkDispatcher::default();
+        let judge = IsaGjkDispatcher::default();
+        let shape = prism(sides, 1.0);
+        let mut memory = Memory::default();
+        for frame in 0..FRAMES {
+            let aside = 1.5e-4 * frame as f32;
+            let tremble = 1e-6 * (0.7 * frame as f32).sin();
+            let turn = Rotation::from_scaled_axis(Vector::new(3e-5, 0.0, 3e-5 + tremble));
+            let pose = Pose::from_parts(Vector::new(aside, 0.799, -0.5 * aside), turn);
+            let sides = [&shape, &shape];
+            let warm = memory.update(&dispatcher, &pose, sides, PREDICTION);
+            let warm = warm.expect("supported");
+            let cold = cold_manifold(&judge, &pose, sides, PREDICTION).expect("supported");
+            let depth = |m: &Manifold| m.find_deepest_contact().expect("touching").dist;
+            let off = (depth(warm) - depth(&cold)).abs();
+            assert!(off < 4e-6, "frame {frame}: {off} off {}", depth(&cold));
+        }
+        let kept = dispatcher.stats().answered[Stage::Kept as usize];
+        assert!(
+            10 * kept > 8 * FRAMES as u64,
+            "{sides} sides: only {kept} of {FRAMES} updates kept"
+        );
+    }
+}

@@ -26,9 +26,13 @@ impl<M, C> KernelManifold<'_, M, C> {
         let points = &self.manifold.points;
         let deepest = points.get(last.deepest(n1.as_dvec3()))?;
         let face = |fid: fn(&TrackedContact<C>) -> PackedFeatureId| {
-            let mut ids = points.iter().map(fid);
-            let is_face = |id: &PackedFeatureId| matches!(unpack(*id), Some(Feature::Face(_)));
-            unpack(ids.find(is_face).unwrap_or(fid(deepest)))
+            let own = fid(deepest);
+            let other = || points.iter().map(fid).find(|id| is_face(*id));
+            unpack(if is_face(own) {
+                own
+            } else {
+                other().unwrap_or(own)
+            })
         };
         let [f1, f2] = self.order.to_kernel([face(|c| c.fid1), face(|c| c.fid2)]);
         Some(FlushFaces {
@@ -36,20 +40,27 @@ impl<M, C> KernelManifold<'_, M, C> {
                 face_of(cso.shape_1, f1?, n1)?,
                 face_of(cso.shape_2, f2?, n2)?,
             ],
-            contacts: *last,
+            middle: last.middle(),
         })
     }
 
     /// Leaves the features in contact to the next frame, with the deepest contact. They may be those of a corner
-    /// without a contact, hardly deeper than this one.
+    /// without a contact, hardly deeper than this one. If both corners touch the same face, the next query starts
+    /// there in any case.
     #[inline]
     pub fn name_deepest(&mut self, deepest: usize, features: [Feature; 2]) {
         let ids = self.order.to_caller(map_pair(features, pack));
         let points = &mut self.manifold.points;
-        if [points[deepest].fid1, points[deepest].fid2] != ids {
+        let old = [points[deepest].fid1, points[deepest].fid2];
+        let has_face = |side: usize| old[side] == ids[side] && is_face(ids[side]);
+        if old != ids && !has_face(0) && !has_face(1) {
             rename(points, deepest, ids);
         }
     }
+}
+
+fn is_face(id: PackedFeatureId) -> bool {
+    matches!(unpack(id), Some(Feature::Face(_)))
 }
 
 /// Gives a contact these features, unless another one has them, or they name no single place.

@@ -16,10 +16,9 @@ use parry3d::query::TrackedContact;
 
 use super::normals::Normals;
 use super::record::KernelManifold;
-use crate::manifold::MAX_POINTS;
 use crate::pose::RelativePose;
 use crate::query::{LastContacts, Proximity, first_least};
-use crate::simd::DVec3x4;
+use crate::simd::{DVec3x4, coordinates, widened};
 use crate::tolerance::{KEPT_ANGLE_COS, KEPT_DEPTH, KEPT_DRIFT};
 
 impl<M, C> KernelManifold<'_, M, C> {
@@ -28,18 +27,19 @@ impl<M, C> KernelManifold<'_, M, C> {
     #[inline(never)]
     pub fn last_contacts(&self, pose: &RelativePose) -> Option<LastContacts> {
         let contacts = &self.manifold.points[..];
-        if !(1..=MAX_POINTS).contains(&contacts.len()) {
-            return None;
-        }
-        let last = contacts.len() - 1;
-        let lanes = [0, 1, 2, 3].map(|lane: usize| &contacts[lane.min(last)]);
-        let points = |of: fn(&TrackedContact<C>) -> Vec3| {
-            DVec3x4::gather(lanes, |contact| of(contact).as_dvec3())
+        let lanes = match contacts {
+            [a] => [a, a, a, a],
+            [a, b] => [a, b, b, b],
+            [a, b, c] => [a, b, c, c],
+            [a, b, c, d] => [a, b, c, d],
+            _ => return None,
         };
+        let points =
+            |of: fn(&TrackedContact<C>) -> &Vec3| DVec3x4(coordinates(lanes.map(of)).map(widened));
         let (on_1, on_2) = if self.order.is_reversed() {
-            (points(|c| c.local_p2), points(|c| c.local_p1))
+            (points(|c| &c.local_p2), points(|c| &c.local_p1))
         } else {
-            (points(|c| c.local_p1), points(|c| c.local_p2))
+            (points(|c| &c.local_p1), points(|c| &c.local_p2))
         };
         Some(LastContacts::new(on_1, on_2, pose))
     }

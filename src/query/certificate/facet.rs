@@ -15,25 +15,25 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
+use super::flush::FlushFaces;
 use super::polygon::{cone_contains_ball, crossing, inset, inset_of_origin, pyramid_contains_ball};
 use crate::gjk::SeparatingAxis;
 use crate::map_pair::map_pair;
-use crate::pose::RelativePose;
 use crate::query::feature::Feature;
 use crate::query::types::Proximity;
 use crate::query::verdict::{FacetEdge, Verdict};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
 use crate::tolerance::PARALLEL_EDGES;
-use crate::tuning::SHALLOW;
+use crate::tuning::{MANY_SIDES, SHALLOW};
 
 /// Re-evaluates the facet that `features` span.
 #[inline]
 pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     features: [Feature; 2],
-    max_distance: f64,
-    tolerance: f64,
+    flush: impl FnOnce() -> Option<FlushFaces>,
+    [max_distance, tolerance]: [f64; 2],
     cost: &mut Cost,
 ) -> Verdict {
     let test = FacetTest {
@@ -49,12 +49,17 @@ pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
         }
         [Feature::Face(f1), other] if cso.shape_1.has_face(f1) => {
             let start = other.vertex(cso.shape_2);
-            test.face(cso.shape_1, cso.shape_2, cso.pose, (f1, start), cost)
+            test.face(cso, (f1, start), flush, cost)
         }
         [other, Feature::Face(f2)] if cso.shape_2.has_face(f2) => {
             let start = other.vertex(cso.shape_1);
-            let pose = cso.pose.inverse();
-            test.face(cso.shape_2, cso.shape_1, &pose, (f2, start), cost)
+            let reversed = Cso {
+                shape_1: cso.shape_2,
+                shape_2: cso.shape_1,
+                pose: &cso.pose.inverse(),
+            };
+            let flush = || flush().map(|flush| flush.reversed(cso.pose));
+            test.face(&reversed, (f2, start), flush, cost)
                 .reversed(cso.pose)
         }
         _ => Verdict::Degenerate,
@@ -67,17 +72,21 @@ struct FacetTest {
 }
 
 impl FacetTest {
-    /// A face of `p` against `q`; everything in the frame of `p`. The climb over `q` begins at
-    /// `start`.
+    /// A face of the first shape against the second one. The climb over that begins at `start`. If the facet alone
+    /// does not prove enough, and the faces lie `flush`, these may.
     #[inline]
     fn face<P: Polytope, Q: Polytope>(
         &self,
-        p: &P,
-        q: &Q,
-        q_pose: &RelativePose,
+        cso: &Cso<'_, P, Q>,
         (face, start): (FaceId, VertexId),
+        flush: impl FnOnce() -> Option<FlushFaces>,
         cost: &mut Cost,
     ) -> Verdict {
+        let &Cso {
+            shape_1: p,
+            shape_2: q,
+            pose: q_pose,
+        } = cso;
         let normal = p.face_normal(face);
         if normal == DVec3::ZERO {
             return Verdict::Degenerate; // a sliver without a plane
@@ -99,14 +108,10 @@ impl FacetTest {
             on_2: on_q,
             features: [Feature::Face(face), Feature::Vertex(q_id)],
         };
-        let apex = p.center() - q_pose.point_to_1(q.center());
-        let depth = -signed_distance - self.tolerance;
-        if depth < SHALLOW * p.radius() {
-            let inset = inset(p, face, normal, on_q, signed_distance);
-            if inset > 0.0 && (depth <= 0.0 || cone_contains_ball(inset, depth, apex, normal)) {
-                return Verdict::Certified(certified);
-            }
+        if self.is_certified(cso, &certified, face, flush) {
+            return Verdict::Certified(certified);
         }
+        let (apex, depth) = (cso.center(), -signed_distance - self.tolerance);
         let corners = p.face_points(face).map(|corner| corner - on_q);
         let inset = match inset_of_origin(corners.clone(), normal, self.tolerance) {
             Ok(inset) => inset,
@@ -119,6 +124,38 @@ impl FacetTest {
             return Verdict::Certified(certified);
         }
         Verdict::Undecided(certified, inset)
+    }
+
+    /// Whether the face alone proves a shallow depth or a distance, or flush faces do. The cheaper proof comes first.
+    #[inline]
+    fn is_certified<P: Polytope, Q: Polytope>(
+        &self,
+        cso: &Cso<'_, P, Q>,
+        near: &Proximity,
+        face: FaceId,
+        flush: impl FnOnce() -> Option<FlushFaces>,
+    ) -> bool {
+        let &Proximity {
+            signed_distance,
+            normal,
+            on_2,
+            ..
+        } = near;
+        let depth = -signed_distance - self.tolerance;
+        let over_face = || {
+            let inset = inset(cso.shape_1, face, normal, on_2, signed_distance);
+            inset > 0.0 && (depth <= 0.0 || cone_contains_ball(inset, depth, cso.center(), normal))
+        };
+        let over_flush_faces = || {
+            flush().is_some_and(|flush| {
+                let faces = [face, flush.faces[1]];
+                let flush = FlushFaces { faces, ..flush };
+                flush.prove_vertex(cso, on_2, signed_distance, -depth)
+            })
+        };
+        let is_shallow = depth < SHALLOW * cso.shape_1.radius();
+        let has_few = cso.shape_1.face_len(face) <= MANY_SIDES;
+        is_shallow && (has_few && over_face() || over_flush_faces() || !has_few && over_face())
     }
 
     /// Two edges that cross; everything in frame 1.

@@ -1,29 +1,30 @@
 //! Two faces that lie flush on each other, as those of bodies at rest do.
 //!
-//! All corners of their patch are about equally deep, and trembling decides which of them is the deepest. So
-//! the features of one corner prove little from one frame to the next. But each place over both faces bounds
-//! the distance from above.
+//! All corners of their patch are about equally deep, and lie on the rims of both faces. So the facet of the deepest one
+//! proves little by itself: the origin projects to its border, or a little beside it.
 //!
-//! Where the shapes overlap, the faces prove a depth as well. The differences of their points around a place in
-//! the middle fill a disc. The deepest point is above it, by the angle between the faces times its radius, and
-//! the flat cone between them lies in the Minkowski difference, as does the one from the disc to its centre.
-//! The ball of the depth looks out of the flat cone by that angle squared only.
+//! But the differences of points of both faces around a place in the middle fill a disc across the normal. With the
+//! deepest vertex they span a point over the origin: it is as deep as the vertex, but for the share of the slope by
+//! which the vertex is beside the face.
+//!
+//! Where the shapes overlap, they prove a depth as well. The flat cone from that point to the disc lies in the
+//! Minkowski difference, as does the one from the disc to its centre. The ball of the depth looks out of the flat cone
+//! by the angle between the faces squared only.
 
 use glam::DVec3;
 
-use super::polygon::{cone_contains_ball, inset, inset_of_quadrilateral};
+use super::polygon::{Corners, cone_contains_ball, distance_beside, inset_in};
 use crate::map_pair::map_pair;
-use crate::query::feature::Feature;
-use crate::query::last_contacts::LastContacts;
-use crate::query::types::{Proximity, Query};
+use crate::pose::RelativePose;
+use crate::query::types::Proximity;
+use crate::simd::LANES;
 use crate::support::{Cso, FaceId, Polytope};
-use crate::tolerance::KEPT_ANGLE_COS;
-use crate::tuning::FLUSH_TIE;
+use crate::tolerance::{DEPTH_GAP, KEPT_ANGLE_COS};
 
-/// A face of each shape, and the contacts between them.
+/// A face of each shape, and the middle of the contacts between them. In frame 1.
 pub(crate) struct FlushFaces {
     pub faces: [FaceId; 2],
-    pub contacts: LastContacts,
+    pub middle: DVec3,
 }
 
 /// Points of the planes of both faces on one line along a normal, each in the frame of its shape.
@@ -33,144 +34,62 @@ struct PointPair {
     distance: f64,
 }
 
-impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
-    /// Answers with flush faces alone. The plane of one of them bounds the distance from below, both faces together
-    /// bound it from above. `features` are those of the deepest contact.
-    pub(in crate::query) fn certify_flush(
-        &mut self,
-        features: [Feature; 2],
-        flush: &FlushFaces,
-    ) -> Option<Proximity> {
-        // The face that a corner of the other one touches is likely the one whose plane supports the difference.
-        let first = usize::from(matches!(features[1], Feature::Face(_)));
-        [first, 1 - first]
-            .into_iter()
-            .find_map(|side| self.certify_face(side, features, flush))
-    }
-
-    /// Answers with the plane of the face on one side.
-    fn certify_face(
-        &mut self,
-        side: usize,
-        features: [Feature; 2],
-        flush: &FlushFaces,
-    ) -> Option<Proximity> {
-        let (normal, signed_distance) = self.distance_to_face(side, features, flush.faces);
-        if signed_distance > self.max_distance || !flush.are_along(self.cso, normal) {
-            return None;
-        }
-        let most = signed_distance + self.tolerance();
-        let tie = FLUSH_TIE * self.tolerance();
-        let place = flush.place_within(self.cso, normal, most, tie)?;
-        Some(Proximity {
-            signed_distance,
-            normal,
-            on_1: place,
-            on_2: place + normal * signed_distance,
-            features: flush.faces.map(Feature::Face),
-        })
-    }
-
-    /// The normal of the face on one side, in frame 1 from shape 1 to shape 2, and the signed distance of the other
-    /// shape from its plane.
-    #[inline]
-    fn distance_to_face(
-        &mut self,
-        side: usize,
-        features: [Feature; 2],
-        [face_1, face_2]: [FaceId; 2],
-    ) -> (DVec3, f64) {
-        let Cso {
-            shape_1,
-            shape_2,
-            pose,
-        } = self.cso;
-        if side == 0 {
-            let normal = shape_1.face_normal(face_1);
-            let start = features[1].vertex(*shape_2);
-            let (on_2, _) = shape_2.support(-pose.direction_to_2(normal), start, self.cost);
-            let height = normal.dot(pose.point_to_1(on_2));
-            (normal, height - shape_1.face_offset(face_1))
-        } else {
-            let outward = shape_2.face_normal(face_2);
-            let normal = -pose.direction_to_1(outward);
-            let start = features[0].vertex(*shape_1);
-            let (on_1, _) = shape_1.support(normal, start, self.cost);
-            let height = outward.dot(pose.point_to_2(on_1));
-            (normal, height - shape_2.face_offset(face_2))
-        }
-    }
-
-    /// Whether flush faces prove that no direction has a smaller depth than the candidate.
-    pub(in crate::query) fn is_depth(&self, candidate: &Proximity, flush: &FlushFaces) -> bool {
-        let (normal, deepest) = (candidate.normal, candidate.signed_distance);
-        if !flush.are_along(self.cso, normal) {
-            return false;
-        }
-        let middle = flush.points_at(self.cso, normal, flush.contacts.middle());
-        flush.prove_depth(
-            self.cso,
-            normal,
-            &middle,
-            [deepest, deepest + self.tolerance()],
-        )
-    }
+/// Differences of points of both faces: a disc across a normal, around the line along it through the origin. As
+/// distances between the shapes.
+struct Disc {
+    radius: f64,
+    /// Of the farthest of these points.
+    highest: f64,
 }
 
 impl FlushFaces {
-    /// A place over both faces, which look along a normal, that proves the signed distance of the shapes to be `most`
-    /// or less. It is in the middle of all contacts, or of those that tie for the deepest.
-    fn place_within<A: Polytope, B: Polytope>(
-        &self,
-        cso: &Cso<'_, A, B>,
-        normal: DVec3,
-        most: f64,
-        tie: f64,
-    ) -> Option<DVec3> {
-        let place = self.contacts.middle();
-        let middle = self.points_at(cso, normal, place);
-        if middle.distance <= most {
-            let is_proved = if most < 0.0 {
-                self.prove_depth(cso, normal, &middle, [middle.distance, most])
-            } else {
-                self.are_inside(cso, &middle)
-            };
-            return is_proved.then_some(place);
+    /// The same in the frame of the second shape, with the shapes in the other order.
+    #[inline]
+    pub fn reversed(&self, pose: &RelativePose) -> Self {
+        let [face_1, face_2] = self.faces;
+        Self {
+            faces: [face_2, face_1],
+            middle: pose.point_to_2(self.middle),
         }
-        let place = self.contacts.middle_of_deepest(normal, tie);
-        let points = self.points_at(cso, normal, place);
-        let is_proved = points.distance <= most
-            && self.are_inside(cso, &points)
-            && (most >= 0.0 || self.prove_depth(cso, normal, &middle, [points.distance, most]));
-        is_proved.then_some(place)
     }
 
-    /// Whether no direction has a smaller depth than `-most`, if the points over the origin along a normal have
-    /// the signed distance `deepest`. The disc is around those in the `middle`.
-    fn prove_depth<A: Polytope, B: Polytope>(
+    /// Whether the signed distance of the shapes is at most this, if the vertex of shape 2 that is deepest beneath the
+    /// plane of the face of shape 1 has this `signed_distance` from it. The vertex is over the face, or a little beside
+    /// it.
+    pub fn prove_vertex<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
-        normal: DVec3,
-        middle: &PointPair,
-        [deepest, most]: [f64; 2],
+        vertex: DVec3,
+        signed_distance: f64,
+        most: f64,
     ) -> bool {
-        let [face_1, face_2] = self.faces;
-        let normals = [
-            cso.shape_1.face_normal(face_1),
-            cso.pose.direction_to_1(cso.shape_2.face_normal(face_2)),
-        ];
-        let [cos_1, cos_2] = map_pair(normals, |n| n.dot(normal).abs());
-        let [sin_1, sin_2] = map_pair(normals, |n| n.cross(normal).length());
-        let proves = |[inset_1, inset_2]: [f64; 2]| {
-            let radius = inset_1 * cos_1 + inset_2 * cos_2;
-            let beneath = middle.distance - deepest + inset_1 * sin_1 + inset_2 * sin_2;
-            let tangent = beneath / radius;
-            deepest - 0.5 * deepest * tangent * tangent <= most
-                && cone_contains_ball(radius, -most, cso.center(), normal)
-        };
-        // A disc that is half as large mostly proves as much.
-        let few = self.insets(cso, middle, inset_of_quadrilateral, inset_of_quadrilateral);
-        few.is_some_and(proves) || self.insets(cso, middle, inset, inset).is_some_and(proves)
+        let face = self.faces[0];
+        let normal = cso.shape_1.face_normal(face);
+        if !self.are_along(cso, normal) {
+            return false;
+        }
+        let middle = self.points_at(cso, normal);
+        let inside = middle.on_planes[0];
+        let beside = distance_beside(cso.shape_1, face, normal, inside, vertex);
+        self.some_disc(cso, normal, &middle, |disc| {
+            let lift = (disc.highest - signed_distance).max(0.0);
+            let over_origin = signed_distance + lift * beside / (beside + disc.radius);
+            over_origin <= most && disc.proves(cso, normal, over_origin, most)
+        })
+    }
+
+    /// Whether flush faces prove that no direction has a smaller depth than the candidate.
+    pub fn is_depth<A: Polytope, B: Polytope>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        candidate: &Proximity,
+    ) -> bool {
+        let (normal, deepest) = (candidate.normal, candidate.signed_distance);
+        let most = deepest + DEPTH_GAP * cso.min_radius();
+        self.are_along(cso, normal)
+            && self.some_disc(cso, normal, &self.points_at(cso, normal), |disc| {
+                disc.proves(cso, normal, deepest, most)
+            })
     }
 
     /// Whether both faces look along a normal.
@@ -183,14 +102,10 @@ impl FlushFaces {
             && cso.shape_2.face_normal(face_2).dot(normal_2) < -KEPT_ANGLE_COS
     }
 
-    /// The points of both planes at a place, of faces that look along the normal.
-    fn points_at<A: Polytope, B: Polytope>(
-        &self,
-        cso: &Cso<'_, A, B>,
-        normal: DVec3,
-        place: DVec3,
-    ) -> PointPair {
-        let [face_1, face_2] = self.faces;
+    /// The points of both planes in the middle, of faces that look along the normal.
+    #[inline]
+    fn points_at<A: Polytope, B: Polytope>(&self, cso: &Cso<'_, A, B>, normal: DVec3) -> PointPair {
+        let ([face_1, face_2], place) = (self.faces, self.middle);
         let height = |outward: DVec3, offset: f64, normal: DVec3, place: DVec3| {
             (offset - outward.dot(place)) / outward.dot(normal)
         };
@@ -207,40 +122,89 @@ impl FlushFaces {
         }
     }
 
-    /// Whether points of the planes are inside of the faces. Quadrilaterals within these mostly prove that.
-    fn are_inside<A: Polytope, B: Polytope>(
+    /// Whether a disc around points in the middle proves something. One in quadrilaterals within the faces is half as
+    /// large, and mostly does.
+    fn some_disc<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
-        points: &PointPair,
+        normal: DVec3,
+        middle: &PointPair,
+        proves: impl Fn(&Disc) -> bool,
     ) -> bool {
-        let few = self.insets(cso, points, inset_of_quadrilateral, inset_of_quadrilateral);
-        few.is_some() || self.insets(cso, points, inset, inset).is_some()
+        let [face_1, face_2] = self.faces;
+        let disc = |corners| {
+            let insets = self.insets(cso, middle, corners)?;
+            Some(self.disc(cso, normal, middle, insets))
+        };
+        if disc(Corners::Four).is_some_and(|disc| proves(&disc)) {
+            return true;
+        }
+        let has_more = cso
+            .shape_1
+            .face_len(face_1)
+            .max(cso.shape_2.face_len(face_2))
+            > LANES;
+        has_more && disc(Corners::All).is_some_and(|disc| proves(&disc))
+    }
+
+    /// The disc around points in the middle of both faces, which are so far inside of these.
+    #[inline]
+    fn disc<A: Polytope, B: Polytope>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        normal: DVec3,
+        middle: &PointPair,
+        [inset_1, inset_2]: [f64; 2],
+    ) -> Disc {
+        let [face_1, face_2] = self.faces;
+        let normals = [
+            cso.shape_1.face_normal(face_1),
+            cso.pose.direction_to_1(cso.shape_2.face_normal(face_2)),
+        ];
+        let [cos_1, cos_2] = map_pair(normals, |n| n.dot(normal).abs());
+        let [sin_1, sin_2] = map_pair(normals, |n| n.cross(normal).length());
+        Disc {
+            radius: inset_1 * cos_1 + inset_2 * cos_2,
+            highest: middle.distance + inset_1 * sin_1 + inset_2 * sin_2,
+        }
     }
 
     /// How far points of the planes are inside of the faces, if they are.
+    #[inline]
     fn insets<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
         points: &PointPair,
-        inset_1: impl Fn(&A, FaceId, DVec3, DVec3, f64) -> f64,
-        inset_2: impl Fn(&B, FaceId, DVec3, DVec3, f64) -> f64,
+        corners: Corners,
     ) -> Option<[f64; 2]> {
-        let [face_1, face_2] = self.faces;
-        let [on_1, on_2] = points.on_planes;
-        let inset_1 = inset_1(
-            cso.shape_1,
-            face_1,
+        let ([face_1, face_2], [on_1, on_2]) = (self.faces, points.on_planes);
+        let (normal_1, normal_2) = (
             cso.shape_1.face_normal(face_1),
-            on_1,
-            0.0,
-        );
-        let inset_2 = inset_2(
-            cso.shape_2,
-            face_2,
             cso.shape_2.face_normal(face_2),
-            on_2,
-            0.0,
         );
-        (inset_1 > 0.0 && inset_2 > 0.0).then_some([inset_1, inset_2])
+        let inset_1 = inset_in(cso.shape_1, face_1, normal_1, on_1, 0.0, corners);
+        if inset_1 <= 0.0 {
+            return None;
+        }
+        let inset_2 = inset_in(cso.shape_2, face_2, normal_2, on_2, 0.0, corners);
+        (inset_2 > 0.0).then_some([inset_1, inset_2])
+    }
+}
+
+impl Disc {
+    /// Whether no direction has a smaller depth than `-most`, if the difference of the shapes has a point over the
+    /// origin along a normal at the signed distance `over_origin`.
+    #[inline]
+    fn proves<A: Polytope, B: Polytope>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        normal: DVec3,
+        over_origin: f64,
+        most: f64,
+    ) -> bool {
+        let tangent = (self.highest - over_origin) / self.radius;
+        most >= 0.0
+            || over_origin - 0.5 * over_origin * tangent * tangent <= most
+                && cone_contains_ball(self.radius, -most, cso.center(), normal)
     }
 }

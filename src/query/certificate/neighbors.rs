@@ -199,7 +199,7 @@ mod tests {
             let vertex = cso.support(normal, cso.start_vertices(normal), &mut cost);
             let mut next = gauss_map::facet_at_vertex(&cso, &vertex, normal);
             let candidate = (0..20).find_map(|_| {
-                match facet::certify(&cso, next?, f64::INFINITY, DEPTH_GAP, &mut cost) {
+                match facet::certify(&cso, next?, || None, [f64::INFINITY, DEPTH_GAP], &mut cost) {
                     Verdict::OutsideEdge(side) => next = gauss_map::adjacent_facet(&cso, &side),
                     Verdict::Undecided(candidate, _) => return Some(candidate),
                     _ => next = None,
