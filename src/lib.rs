@@ -62,11 +62,11 @@
 //!
 //! let hull = HullShape::from_points(&[Vector::ZERO, Vector::X, Vector::Y, Vector::Z])?;
 //! let pos12 = Pose::translation(-1.5, 0.0, 0.0);
-//! let distance = IsaGjkDispatcher::default().distance(&pos12, &hull, &hull)?;
-//! assert!((distance - 0.5).abs() < 1e-6);
+//! let found = IsaGjkDispatcher::default().distance(&pos12, &hull, &hull)?;
+//! assert!((found.distance - 0.5).abs() < 1e-6);
 //!
 //! let bounds = SeparationBounds::between(&hull, &hull, &pos12)?;
-//! assert!(bounds.lower <= 0.5 && 0.5 <= bounds.upper && bounds.upper - bounds.lower < 1e-9);
+//! assert!(bounds.lower <= 0.5 && 0.5 <= bounds.upper && bounds.upper - bounds.lower < 1e-5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![deny(unsafe_code)]
