@@ -45,7 +45,7 @@ fn directions(hull: &Hull, rng: &mut Rng) -> Vec<DVec3> {
 
 /// The most that a climb loses, in plateaus: from every vertex, or of large hulls from every few.
 fn worst_climb(hull: &Hull, rng: &mut Rng) -> f64 {
-    const STARTS: usize = 350;
+    const STARTS: usize = 200;
     let step = hull.points().len() / STARTS + 1;
     let mut worst = 0.0_f64;
     for dir in directions(hull, rng) {
