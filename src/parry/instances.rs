@@ -141,7 +141,7 @@ impl<B: HullPartner> Strategy<Hull, B> for FullWithHull {
         self,
         query: &mut Query<'_, '_, Hull, B>,
         features: [Feature; 2],
-        flush: impl FnOnce() -> Option<FlushFaces>,
+        flush: impl FnMut() -> Option<FlushFaces>,
     ) -> Verdict {
         Full.certify(query, features, flush)
     }

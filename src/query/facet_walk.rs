@@ -46,7 +46,7 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
     pub(super) fn certify(
         &mut self,
         features: [Feature; 2],
-        flush: impl FnOnce() -> Option<FlushFaces>,
+        flush: impl FnMut() -> Option<FlushFaces>,
     ) -> Verdict {
         let limits = [self.max_distance, self.tolerance()];
         facet::certify(self.cso, features, flush, limits, self.cost)

@@ -65,7 +65,7 @@ pub(crate) trait Strategy<A: Support, B: Support>: Copy {
         self,
         query: &mut Query<'_, '_, A, B>,
         features: [Feature; 2],
-        flush: impl FnOnce() -> Option<FlushFaces>,
+        flush: impl FnMut() -> Option<FlushFaces>,
     ) -> Verdict {
         let _ = (query, features, flush);
         Verdict::Degenerate
@@ -104,7 +104,7 @@ impl<A: Polytope, B: Polytope> Strategy<A, B> for Full {
         self,
         query: &mut Query<'_, '_, A, B>,
         features: [Feature; 2],
-        flush: impl FnOnce() -> Option<FlushFaces>,
+        flush: impl FnMut() -> Option<FlushFaces>,
     ) -> Verdict {
         query.certify(features, flush)
     }

@@ -45,7 +45,9 @@ pub(super) trait CurvedManifold {
 
 impl<M, C: Default + Copy> CurvedManifold for ContactManifold<M, C> {
     fn last_contacts(&mut self, order: PairOrder, pose: &RelativePose) -> Option<LastContacts> {
-        kernel_manifold(self, order).last_contacts(pose)
+        let mut last = None;
+        kernel_manifold(self, order).read_contacts(pose, &mut last);
+        last
     }
 
     fn hint(&mut self, order: PairOrder, frame: AxisFrame<'_>, borders: f64) -> Hint {

@@ -92,7 +92,7 @@ where
         if !manifold.manifold.points.is_empty()
             && let Some(pose) = self.contacts.pose()
         {
-            self.last = manifold.last_contacts(pose);
+            manifold.read_contacts(pose, &mut self.last);
         }
         manifold.memory(self.last.as_ref())
     }

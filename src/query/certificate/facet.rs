@@ -32,7 +32,7 @@ use crate::tuning::{MANY_SIDES, SHALLOW};
 pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
     cso: &Cso<'_, A, B>,
     features: [Feature; 2],
-    flush: impl FnOnce() -> Option<FlushFaces>,
+    mut flush: impl FnMut() -> Option<FlushFaces>,
     [max_distance, tolerance]: [f64; 2],
     cost: &mut Cost,
 ) -> Verdict {
@@ -49,7 +49,7 @@ pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
         }
         [Feature::Face(f1), other] if cso.shape_1.has_face(f1) => {
             let start = other.vertex(cso.shape_2);
-            test.face(cso, (f1, start), flush, cost)
+            test.face(cso, (f1, start), &mut flush, cost)
         }
         [other, Feature::Face(f2)] if cso.shape_2.has_face(f2) => {
             let start = other.vertex(cso.shape_1);
@@ -58,8 +58,8 @@ pub(in crate::query) fn certify<A: Polytope, B: Polytope>(
                 shape_2: cso.shape_1,
                 pose: &cso.pose.inverse(),
             };
-            let flush = || flush().map(|flush| flush.reversed(cso.pose));
-            test.face(&reversed, (f2, start), flush, cost)
+            let mut flush = || flush().map(|flush| flush.reversed(cso.pose));
+            test.face(&reversed, (f2, start), &mut flush, cost)
                 .reversed(cso.pose)
         }
         _ => Verdict::Degenerate,
@@ -79,7 +79,7 @@ impl FacetTest {
         &self,
         cso: &Cso<'_, P, Q>,
         (face, start): (FaceId, VertexId),
-        flush: impl FnOnce() -> Option<FlushFaces>,
+        flush: &mut dyn FnMut() -> Option<FlushFaces>,
         cost: &mut Cost,
     ) -> Verdict {
         let &Cso {
@@ -133,7 +133,7 @@ impl FacetTest {
         cso: &Cso<'_, P, Q>,
         near: &Proximity,
         face: FaceId,
-        flush: impl FnOnce() -> Option<FlushFaces>,
+        flush: &mut dyn FnMut() -> Option<FlushFaces>,
     ) -> bool {
         let &Proximity {
             signed_distance,
@@ -142,20 +142,24 @@ impl FacetTest {
             ..
         } = near;
         let depth = -signed_distance - self.tolerance;
-        let over_face = || {
-            let inset = inset(cso.shape_1, face, normal, on_2, signed_distance);
+        if depth >= SHALLOW * cso.shape_1.radius() {
+            return false;
+        }
+        let inset = || inset(cso.shape_1, face, normal, on_2, signed_distance);
+        let proves = |inset| {
             inset > 0.0 && (depth <= 0.0 || cone_contains_ball(inset, depth, cso.center(), normal))
         };
-        let over_flush_faces = || {
-            flush().is_some_and(|flush| {
-                let faces = [face, flush.faces[1]];
-                let flush = FlushFaces { faces, ..flush };
-                flush.prove_vertex(cso, on_2, signed_distance, -depth)
-            })
-        };
-        let is_shallow = depth < SHALLOW * cso.shape_1.radius();
-        let has_few = cso.shape_1.face_len(face) <= MANY_SIDES;
-        is_shallow && (has_few && over_face() || over_flush_faces() || !has_few && over_face())
+        let few = (cso.shape_1.face_len(face) <= MANY_SIDES).then(inset);
+        if few.is_some_and(proves) {
+            return true;
+        }
+        let is_over = few.is_some_and(|inset| inset > 0.0);
+        let over_flush_faces = flush().is_some_and(|flush| {
+            let faces = [face, flush.faces[1]];
+            let flush = FlushFaces { faces, ..flush };
+            flush.prove_vertex(cso, (on_2, is_over), signed_distance, -depth)
+        });
+        over_flush_faces || few.is_none() && proves(inset())
     }
 
     /// Two edges that cross; everything in frame 1.

@@ -56,10 +56,12 @@ impl FlushFaces {
     /// Whether the signed distance of the shapes is at most this, if the vertex of shape 2 that is deepest beneath the
     /// plane of the face of shape 1 has this `signed_distance` from it. The vertex is over the face, or a little beside
     /// it.
+    // perf: in its caller, it would keep a query from being inlined: 2 % more instructions in touching/8.
+    #[inline(never)]
     pub fn prove_vertex<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
-        vertex: DVec3,
+        (vertex, is_over): (DVec3, bool),
         signed_distance: f64,
         most: f64,
     ) -> bool {
@@ -70,7 +72,11 @@ impl FlushFaces {
         }
         let middle = self.points_at(cso, normal);
         let inside = middle.on_planes[0];
-        let beside = distance_beside(cso.shape_1, face, normal, inside, vertex);
+        let beside = if is_over {
+            0.0
+        } else {
+            distance_beside(cso.shape_1, face, normal, inside, vertex)
+        };
         self.some_disc(cso, normal, &middle, |disc| {
             let lift = (disc.highest - signed_distance).max(0.0);
             let over_origin = signed_distance + lift * beside / (beside + disc.radius);
