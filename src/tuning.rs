@@ -118,3 +118,21 @@ pub(crate) const MAX_NEWTON_STEPS: usize = 5;
 /// A face seems flat if its fourth corner is no higher over the first three than this share of its length.
 /// Then flat sides are tried first.
 pub(crate) const SEEMS_FLAT: f64 = 1e-5;
+
+/// Manifolds whose normals have at least this cosine lie in one plane: the angle, five degrees, up to which
+/// rapier merges them.
+pub(crate) const ONE_PLANE_COS: f32 = 0.996;
+
+/// A contact this many times as high above the deepest one as it is far from the others is no better than
+/// none: the body would have to turn by four degrees before it touches there. Heaps of bodies of two
+/// hulls rest with 5 as well as with 15, and never with 0.
+pub(crate) const RISE: f32 = 15.0;
+
+/// If no contact is higher above the deepest than this share of the extent of all, any four of them will do, and
+/// all are kept. With a third of it, heaps of bodies of two hulls rest as well; with three times of it, one in six
+/// keeps rattling.
+pub(crate) const ALL_LEVEL: f32 = 0.02;
+
+/// Contacts of a part are equally deep if their distances differ by less than this share of the extent of the
+/// contacts: less than the promised accuracy of a depth.
+pub(crate) const ONE_DEPTH: f32 = 3e-6;

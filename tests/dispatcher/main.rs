@@ -9,6 +9,7 @@ mod capsules;
 mod changed_shapes;
 mod coherence;
 mod contacts;
+mod coplanar;
 mod counting;
 mod covered;
 mod curved;

@@ -16,9 +16,11 @@ use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Shape, ShapeType};
 
 mod compound;
+mod coplanar;
 mod mesh;
 pub(crate) mod scene;
 pub(crate) mod seams;
+mod spread;
 mod sub_manifolds;
 
 use crate::parry::curved::is_curved;
@@ -47,8 +49,12 @@ where
 {
     // parry's routines assert that boxes are not loosened by a negative length.
     let prediction = prediction.max(0.0);
-    by_us(updater, pos12, shapes, prediction, manifolds, workspace)
-        || by_parry(dispatcher, pos12, shapes, prediction, manifolds, workspace)
+    let is_composite = by_us(updater, pos12, shapes, prediction, manifolds, workspace)
+        || by_parry(dispatcher, pos12, shapes, prediction, manifolds, workspace);
+    if is_composite {
+        coplanar::reduce(shapes, manifolds);
+    }
+    is_composite
 }
 
 /// By parry's routines, which take a shape apart. `false` if none has parts.

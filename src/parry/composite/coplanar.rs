@@ -1,0 +1,203 @@
+//! The contacts of parts that meet the other shape in one plane.
+//!
+//! rapier merges the manifolds of a pair whose normals are nearly the same, and its solver takes four of
+//! their contacts: the deepest one, and others far from it, however high they are above the surface. So a
+//! body of two parts may lie on one contact that touches and on three that do not. It tips over, the next
+//! four contacts are others, and it never comes to rest.
+//!
+//! So where some contacts are high, we leave four in the plane, or one for each part if there are more parts:
+//! those that are far from each other, but low. Each part keeps its deepest contact, or one as deep, since that
+//! is the answer of its query.
+
+use glam::Vec2;
+use parry3d::math::{Real, Vector};
+use parry3d::query::{ContactManifold, TrackedContact};
+use parry3d::shape::Shape;
+
+use super::spread::{PartContact, Spread};
+use crate::manifold::MAX_POINTS;
+use crate::parry::curved::is_curved;
+use crate::parry::operand::is_hull;
+use crate::tuning::{ALL_LEVEL, ONE_DEPTH, ONE_PLANE_COS, RISE};
+
+/// With more planes than these, contacts in the others stay as they are.
+const MAX_PLANES: usize = 8;
+
+/// Reduces the contacts of the parts of two shapes, if some of these parts are ours to answer.
+pub(super) fn reduce<M, C>(shapes: [&dyn Shape; 2], manifolds: &mut [ContactManifold<M, C>]) {
+    let count: usize = manifolds.iter().map(|manifold| manifold.points.len()).sum();
+    if count <= MAX_POINTS || !manifolds.iter().any(|manifold| is_ours(shapes, manifold)) {
+        return;
+    }
+    let planes = Planes::of(manifolds);
+    for plane in 0..planes.len {
+        let Group {
+            parts, contacts, ..
+        } = planes.groups[plane];
+        if parts > 1
+            && contacts > parts.max(MAX_POINTS)
+            && let Some(chosen) = planes.choose(plane, manifolds)
+        {
+            planes.keep(plane, &chosen, manifolds);
+        }
+    }
+}
+
+/// The manifolds whose normals are nearly the same.
+#[derive(Clone, Copy, Default)]
+struct Group {
+    /// Of the first of them, in the frame of the first shape.
+    normal: Vector,
+    parts: usize,
+    contacts: usize,
+}
+
+/// The planes in which the parts meet the other shape.
+struct Planes {
+    groups: [Group; MAX_PLANES],
+    len: usize,
+}
+
+impl Planes {
+    fn of<M, C>(manifolds: &[ContactManifold<M, C>]) -> Self {
+        let mut planes = Self {
+            groups: Default::default(),
+            len: 0,
+        };
+        for manifold in manifolds {
+            if manifold.points.is_empty() {
+                continue;
+            }
+            let normal = normal(manifold);
+            let plane = planes.find(normal).unwrap_or(planes.len);
+            if let Some(group) = planes.groups.get_mut(plane) {
+                if plane == planes.len {
+                    group.normal = normal;
+                    planes.len += 1;
+                }
+                group.parts += 1;
+                group.contacts += manifold.points.len();
+            }
+        }
+        planes
+    }
+
+    /// The first plane with about this normal: rapier merges manifolds in the same way.
+    fn find(&self, normal: Vector) -> Option<usize> {
+        let groups = self.groups[..self.len].iter();
+        groups
+            .map(|group| group.normal.dot(normal))
+            .position(|cos| cos >= ONE_PLANE_COS)
+    }
+
+    fn contains<M, C>(&self, plane: usize, manifold: &ContactManifold<M, C>) -> bool {
+        !manifold.points.is_empty() && self.find(normal(manifold)) == Some(plane)
+    }
+
+    /// The contacts in a plane.
+    fn spots<M, C>(
+        &self,
+        plane: usize,
+        manifolds: &[ContactManifold<M, C>],
+    ) -> impl Iterator<Item = PartContact> {
+        let (x, y) = self.groups[plane].normal.any_orthonormal_pair();
+        let parts = manifolds.iter().enumerate();
+        let parts = parts.filter(move |(_, part)| self.contains(plane, part));
+        parts.flat_map(move |(manifold, part)| {
+            let points = part.points.iter().enumerate();
+            let deepest = deepest(&part.points);
+            points.map(move |(place, point)| {
+                let pos = part.subshape_pos1();
+                let at = pos.map_or(point.local_p1, |pos| *pos * point.local_p1);
+                PartContact {
+                    manifold,
+                    place,
+                    at: Vec2::new(at.dot(x), at.dot(y)),
+                    distance: point.dist,
+                    above: point.dist - deepest,
+                }
+            })
+        })
+    }
+
+    /// The deepest contact, and three others: each as far as possible from those before it, less its height
+    /// above the deepest. The last ones are left to parts that have none yet. `None` if no contact is so high that
+    /// its place does not matter: then any choice will do.
+    fn choose<M, C>(&self, plane: usize, manifolds: &[ContactManifold<M, C>]) -> Option<Spread> {
+        let spots = || self.spots(plane, manifolds);
+        let deepest = spots().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+        let away = |spot: &PartContact| spot.at.distance(deepest.at);
+        let height = |spot: &PartContact| spot.distance - deepest.distance;
+        let extent = spots().map(|spot| away(&spot)).fold(0.0, Real::max);
+        if spots().all(|spot| height(&spot) <= ALL_LEVEL * extent) {
+            return None;
+        }
+        let mut chosen = Spread::new(ONE_DEPTH * extent);
+        // Of equally deep ones, one at the rim leaves room for the others.
+        let ties = spots().filter(|spot| height(spot) <= chosen.tie);
+        let first = ties.max_by(|a, b| away(a).total_cmp(&away(b)));
+        chosen.push(first.unwrap_or(deepest));
+        for place in 1..MAX_POINTS {
+            let without = self.groups[plane].parts.saturating_sub(chosen.parts);
+            let is_reserved = without >= MAX_POINTS - place;
+            let allowed = |spot: &PartContact| {
+                let is_new = !chosen.contains(spot.manifold, spot.place);
+                is_new && (!is_reserved || chosen.would_serve(spot))
+            };
+            let worth = |spot: &PartContact| chosen.room(spot.at) - RISE * height(spot);
+            let best = spots().filter(allowed);
+            let Some(best) = best.max_by(|a, b| worth(a).total_cmp(&worth(b))) else {
+                break;
+            };
+            chosen.push(best);
+        }
+        Some(chosen)
+    }
+
+    /// Drops the contacts that are not chosen, except for the deepest of a part that has no other.
+    fn keep<M, C>(&self, plane: usize, chosen: &Spread, manifolds: &mut [ContactManifold<M, C>]) {
+        for (manifold, part) in manifolds.iter_mut().enumerate() {
+            if !self.contains(plane, part) {
+                continue;
+            }
+            let deepest = deepest(&part.points);
+            let mut is_served = chosen.serves(manifold);
+            let mut place = 0;
+            part.points.retain(|point| {
+                let is_deepest = !is_served && point.dist <= deepest;
+                is_served |= is_deepest;
+                place += 1;
+                is_deepest || chosen.contains(manifold, place - 1)
+            });
+        }
+    }
+}
+
+/// Whether one of the two parts is a hull, a cylinder or a cone.
+fn is_ours<M, C>([s1, s2]: [&dyn Shape; 2], manifold: &ContactManifold<M, C>) -> bool {
+    is_part_ours(s1, manifold.subshape1) || is_part_ours(s2, manifold.subshape2)
+}
+
+fn is_part_ours(shape: &dyn Shape, part: u32) -> bool {
+    let Some(compound) = shape.as_compound() else {
+        return is_hull(shape) || is_curved(shape);
+    };
+    let part = usize::try_from(part)
+        .ok()
+        .and_then(|part| compound.shapes().get(part));
+    part.is_some_and(|(_, part)| is_hull(&**part) || is_curved(&**part))
+}
+
+/// The normal in the frame of the first shape.
+fn normal<M, C>(manifold: &ContactManifold<M, C>) -> Vector {
+    let local = manifold.local_n1;
+    manifold
+        .subshape_pos1()
+        .map_or(local, |pos| pos.rotation * local)
+}
+
+/// The least distance.
+fn deepest<C>(points: &[TrackedContact<C>]) -> Real {
+    let distances = points.iter().map(|point| point.dist);
+    distances.fold(Real::MAX, Real::min)
+}
