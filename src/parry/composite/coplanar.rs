@@ -23,6 +23,9 @@ use crate::tuning::{ALL_LEVEL, ONE_DEPTH, ONE_PLANE_COS, RISE};
 /// With more planes than these, contacts in the others stay as they are.
 const MAX_PLANES: usize = 8;
 
+/// A plane with more contacts than these keeps all of them.
+const MAX_CONTACTS: usize = 64;
+
 /// Reduces the contacts of the parts of two shapes, if some of these parts are ours to answer.
 pub(super) fn reduce<M, C>(shapes: [&dyn Shape; 2], manifolds: &mut [ContactManifold<M, C>]) {
     let count: usize = manifolds.iter().map(|manifold| manifold.points.len()).sum();
@@ -94,64 +97,73 @@ impl Planes {
         !manifold.points.is_empty() && self.find(normal(manifold)) == Some(plane)
     }
 
-    /// The contacts in a plane.
-    fn spots<M, C>(
+    /// The contacts in a plane, in a buffer. `None` if there are more than fit into it.
+    fn contacts<'a, M, C>(
         &self,
         plane: usize,
         manifolds: &[ContactManifold<M, C>],
-    ) -> impl Iterator<Item = PartContact> {
+        buffer: &'a mut [PartContact; MAX_CONTACTS],
+    ) -> Option<&'a [PartContact]> {
         let (x, y) = self.groups[plane].normal.any_orthonormal_pair();
-        let parts = manifolds.iter().enumerate();
-        let parts = parts.filter(move |(_, part)| self.contains(plane, part));
-        parts.flat_map(move |(manifold, part)| {
-            let points = part.points.iter().enumerate();
+        let mut count = 0;
+        for (manifold, part) in manifolds.iter().enumerate() {
+            if !self.contains(plane, part) {
+                continue;
+            }
             let deepest = deepest(&part.points);
-            points.map(move |(place, point)| {
-                let pos = part.subshape_pos1();
+            let pos = part.subshape_pos1();
+            for (place, point) in part.points.iter().enumerate() {
                 let at = pos.map_or(point.local_p1, |pos| *pos * point.local_p1);
-                PartContact {
+                *buffer.get_mut(count)? = PartContact {
                     manifold,
                     place,
                     at: Vec2::new(at.dot(x), at.dot(y)),
                     distance: point.dist,
                     above: point.dist - deepest,
-                }
-            })
-        })
+                };
+                count += 1;
+            }
+        }
+        Some(&buffer[..count])
     }
 
     /// The deepest contact, and three others: each as far as possible from those before it, less its height
-    /// above the deepest. The last ones are left to parts that have none yet. `None` if no contact is so high that
-    /// its place does not matter: then any choice will do.
+    /// above the deepest. The last ones are left to parts that have none yet. `None` if all are about equally high:
+    /// then any choice will do.
     fn choose<M, C>(&self, plane: usize, manifolds: &[ContactManifold<M, C>]) -> Option<Spread> {
-        let spots = || self.spots(plane, manifolds);
-        let deepest = spots().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
-        let away = |spot: &PartContact| spot.at.distance(deepest.at);
-        let height = |spot: &PartContact| spot.distance - deepest.distance;
-        let extent = spots().map(|spot| away(&spot)).fold(0.0, Real::max);
-        if spots().all(|spot| height(&spot) <= ALL_LEVEL * extent) {
+        let mut buffer = [PartContact::default(); MAX_CONTACTS];
+        let contacts = self.contacts(plane, manifolds, &mut buffer)?;
+        let deepest = greatest(contacts, |contact| Some(-contact.distance))?;
+        let height = |contact: &PartContact| contact.distance - deepest.distance;
+        let away = |contact: &PartContact| contact.at.distance(deepest.at);
+        let extent = contacts.iter().map(away).fold(0.0, Real::max);
+        if contacts
+            .iter()
+            .all(|contact| height(contact) <= ALL_LEVEL * extent)
+        {
             return None;
         }
-        let mut chosen = Spread::new(ONE_DEPTH * extent);
+        let mut spread = Spread::new(ONE_DEPTH * extent);
         // Of equally deep ones, one at the rim leaves room for the others.
-        let ties = spots().filter(|spot| height(spot) <= chosen.tie);
-        let first = ties.max_by(|a, b| away(a).total_cmp(&away(b)));
-        chosen.push(first.unwrap_or(deepest));
+        let first = greatest(contacts, |contact| {
+            (height(contact) <= spread.tie).then(|| away(contact))
+        });
+        spread.push(first.unwrap_or(deepest));
         for place in 1..MAX_POINTS {
-            let without = self.groups[plane].parts.saturating_sub(chosen.parts);
+            let without = self.groups[plane].parts.saturating_sub(spread.parts);
             let is_reserved = without >= MAX_POINTS - place;
-            let allowed = |spot: &PartContact| {
-                let is_new = !chosen.contains(spot.manifold, spot.place);
-                is_new && (!is_reserved || chosen.would_serve(spot))
-            };
-            let worth = |spot: &PartContact| chosen.room(spot.at) - RISE * height(spot);
-            let best = spots().filter(allowed);
-            let Some(best) = best.max_by(|a, b| worth(a).total_cmp(&worth(b))) else {
+            let room = spread.room();
+            let best = greatest(contacts, |contact| {
+                let is_new = !spread.contains(contact.manifold, contact.place);
+                let is_allowed = is_new && (!is_reserved || spread.would_serve(contact));
+                is_allowed.then(|| room.at(contact.at) - RISE * height(contact))
+            });
+            let Some(best) = best else {
                 break;
             };
-            chosen.push(best);
+            spread.push(best);
         }
-        Some(chosen)
+        Some(spread)
     }
 
     /// Drops the contacts that are not chosen, except for the deepest of a part that has no other.
@@ -171,6 +183,22 @@ impl Planes {
             });
         }
     }
+}
+
+/// The contact with the greatest worth, of those that have one.
+fn greatest(
+    contacts: &[PartContact],
+    worth: impl Fn(&PartContact) -> Option<Real>,
+) -> Option<&PartContact> {
+    let mut greatest = None;
+    for contact in contacts {
+        if let Some(worth) = worth(contact)
+            && greatest.is_none_or(|(_, most)| worth > most)
+        {
+            greatest = Some((contact, worth));
+        }
+    }
+    greatest.map(|(contact, _)| contact)
 }
 
 /// Whether one of the two parts is a hull, a cylinder or a cone.

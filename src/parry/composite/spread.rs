@@ -6,7 +6,7 @@ use parry3d::math::Real;
 use crate::manifold::MAX_POINTS;
 
 /// A contact, by its manifold and its place there.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct PartContact {
     pub manifold: usize,
     pub place: usize,
@@ -20,7 +20,7 @@ pub(super) struct PartContact {
 /// The contacts for the solver.
 #[derive(Default)]
 pub(super) struct Spread {
-    spots: [Option<PartContact>; MAX_POINTS],
+    contacts: [Option<PartContact>; MAX_POINTS],
     len: usize,
     /// How many parts have their deepest contact here.
     pub parts: usize,
@@ -36,52 +36,93 @@ impl Spread {
         }
     }
 
-    pub fn push(&mut self, spot: PartContact) {
-        self.parts += usize::from(self.would_serve(&spot));
-        self.spots[self.len] = Some(spot);
+    pub fn push(&mut self, contact: &PartContact) {
+        self.parts += usize::from(self.would_serve(contact));
+        self.contacts[self.len] = Some(*contact);
         self.len += 1;
     }
 
     fn iter(&self) -> impl Iterator<Item = &PartContact> {
-        self.spots.iter().flatten()
+        self.contacts.iter().flatten()
     }
 
     pub fn contains(&self, manifold: usize, place: usize) -> bool {
         self.iter()
-            .any(|spot| (spot.manifold, spot.place) == (manifold, place))
+            .any(|contact| (contact.manifold, contact.place) == (manifold, place))
     }
 
     /// Whether a part has its deepest contact here, or one as deep.
     pub fn serves(&self, manifold: usize) -> bool {
         self.iter()
-            .any(|spot| spot.manifold == manifold && spot.above <= self.tie)
+            .any(|contact| contact.manifold == manifold && contact.above <= self.tie)
     }
 
     /// Whether it is the deepest contact, or one as deep, of a part that has none here.
-    pub fn would_serve(&self, spot: &PartContact) -> bool {
-        spot.above <= self.tie && !self.serves(spot.manifold)
+    pub fn would_serve(&self, contact: &PartContact) -> bool {
+        contact.above <= self.tie && !self.serves(contact.manifold)
     }
 
-    /// How far a place is from the contact, from the line through both, or outside of the triangle of all three.
-    pub fn room(&self, at: Vec2) -> Real {
-        let beyond = |a: &PartContact, b: &PartContact| {
-            let line = (b.at - a.at).normalize_or_zero();
-            line.perp_dot(at - a.at)
-        };
-        match &self.spots {
-            [Some(a), None, ..] => a.at.distance(at),
-            [Some(a), Some(b), None, _] => beyond(a, b).abs(),
-            [Some(a), Some(b), Some(c), _] => {
-                let outwards = if (b.at - a.at).perp_dot(c.at - a.at) > 0.0 {
-                    -1.0
+    /// The room that they leave.
+    pub fn room(&self) -> Room {
+        let places = self.contacts.map(|contact| Some(contact?.at));
+        let [a, b, c, _] = places;
+        match (a, b, c) {
+            (Some(a), None, _) => Room::Around(a),
+            (Some(a), Some(b), None) => Room::Beside(Side::new(a, b)),
+            (Some(a), Some(b), Some(c)) => {
+                // Counter-clockwise, so that all sides look outwards.
+                let [b, c] = if (b - a).perp_dot(c - a) < 0.0 {
+                    [c, b]
                 } else {
-                    1.0
+                    [b, c]
                 };
-                let edges = [(a, b), (b, c), (c, a)];
-                let outside = edges.map(|(a, b)| outwards * beyond(a, b));
-                outside.into_iter().fold(Real::MIN, Real::max)
+                Room::Outside([Side::new(a, b), Side::new(b, c), Side::new(c, a)])
             }
-            _ => 0.0,
+            (None, ..) => Room::Around(Vec2::ZERO),
         }
+    }
+}
+
+/// The places that are not yet held.
+pub(super) enum Room {
+    Around(Vec2),
+    /// On both sides of a line.
+    Beside(Side),
+    /// Beyond the sides of a triangle.
+    Outside([Side; 3]),
+}
+
+impl Room {
+    /// How far a place is from the contact, from the line through two, or outside of the triangle of three.
+    pub fn at(&self, place: Vec2) -> Real {
+        match self {
+            Self::Around(contact) => contact.distance(place),
+            Self::Beside(line) => line.right_of(place).abs(),
+            Self::Outside(sides) => {
+                let [a, b, c] = sides.each_ref().map(|side| side.right_of(place));
+                a.max(b).max(c)
+            }
+        }
+    }
+}
+
+/// A directed line through two contacts.
+pub(super) struct Side {
+    start: Vec2,
+    right: Vec2,
+}
+
+impl Side {
+    fn new(start: Vec2, end: Vec2) -> Self {
+        let line = (end - start).normalize_or_zero();
+        Self {
+            start,
+            right: -line.perp(),
+        }
+    }
+
+    /// How far a place is to the right.
+    fn right_of(&self, place: Vec2) -> Real {
+        self.right.dot(place - self.start)
     }
 }
