@@ -37,11 +37,8 @@ pub(super) fn reduce<M, C>(shapes: [&dyn Shape; 2], manifolds: &mut [ContactMani
         let Group {
             parts, contacts, ..
         } = planes.groups[plane];
-        if parts > 1
-            && contacts > parts.max(MAX_POINTS)
-            && let Some(chosen) = planes.choose(plane, manifolds)
-        {
-            planes.keep(plane, &chosen, manifolds);
+        if parts > 1 && contacts > parts.max(MAX_POINTS) {
+            planes.reduce(plane, manifolds);
         }
     }
 }
@@ -93,10 +90,6 @@ impl Planes {
             .position(|cos| cos >= ONE_PLANE_COS)
     }
 
-    fn contains<M, C>(&self, plane: usize, manifold: &ContactManifold<M, C>) -> bool {
-        !manifold.points.is_empty() && self.find(normal(manifold)) == Some(plane)
-    }
-
     /// The contacts in a plane, in a buffer. `None` if there are more than fit into it.
     fn contacts<'a, M, C>(
         &self,
@@ -107,7 +100,7 @@ impl Planes {
         let (x, y) = self.groups[plane].normal.any_orthonormal_pair();
         let mut count = 0;
         for (manifold, part) in manifolds.iter().enumerate() {
-            if !self.contains(plane, part) {
+            if part.points.is_empty() || self.find(normal(part)) != Some(plane) {
                 continue;
             }
             let deepest = deepest(&part.points);
@@ -127,62 +120,59 @@ impl Planes {
         Some(&buffer[..count])
     }
 
-    /// The deepest contact, and three others: each as far as possible from those before it, less its height
-    /// above the deepest. The last ones are left to parts that have none yet. `None` if all are about equally high:
-    /// then any choice will do.
-    fn choose<M, C>(&self, plane: usize, manifolds: &[ContactManifold<M, C>]) -> Option<Spread> {
+    /// Drops the contacts of a plane that are not chosen, except for the deepest of a part that has no other.
+    fn reduce<M, C>(&self, plane: usize, manifolds: &mut [ContactManifold<M, C>]) {
         let mut buffer = [PartContact::default(); MAX_CONTACTS];
-        let contacts = self.contacts(plane, manifolds, &mut buffer)?;
-        let deepest = greatest(contacts, |contact| Some(-contact.distance))?;
-        let height = |contact: &PartContact| contact.distance - deepest.distance;
-        let away = |contact: &PartContact| contact.at.distance(deepest.at);
-        let extent = contacts.iter().map(away).fold(0.0, Real::max);
-        if contacts
-            .iter()
-            .all(|contact| height(contact) <= ALL_LEVEL * extent)
-        {
-            return None;
-        }
-        let mut spread = Spread::new(ONE_DEPTH * extent);
-        // Of equally deep ones, one at the rim leaves room for the others.
-        let first = greatest(contacts, |contact| {
-            (height(contact) <= spread.tie).then(|| away(contact))
-        });
-        spread.push(first.unwrap_or(deepest));
-        for place in 1..MAX_POINTS {
-            let without = self.groups[plane].parts.saturating_sub(spread.parts);
-            let is_reserved = without >= MAX_POINTS - place;
-            let room = spread.room();
-            let best = greatest(contacts, |contact| {
-                let is_new = !spread.contains(contact.manifold, contact.place);
-                let is_allowed = is_new && (!is_reserved || spread.would_serve(contact));
-                is_allowed.then(|| room.at(contact.at) - RISE * height(contact))
-            });
-            let Some(best) = best else {
-                break;
-            };
-            spread.push(best);
-        }
-        Some(spread)
-    }
-
-    /// Drops the contacts that are not chosen, except for the deepest of a part that has no other.
-    fn keep<M, C>(&self, plane: usize, chosen: &Spread, manifolds: &mut [ContactManifold<M, C>]) {
-        for (manifold, part) in manifolds.iter_mut().enumerate() {
-            if !self.contains(plane, part) {
-                continue;
+        let Some(contacts) = self.contacts(plane, manifolds, &mut buffer) else {
+            return;
+        };
+        let Some(spread) = choose(contacts, self.groups[plane].parts) else {
+            return;
+        };
+        // From the last one, so that the places of the others stay.
+        for (i, contact) in contacts.iter().enumerate().rev() {
+            if !spread.contains(contact) && !spread.lacks(contact, &contacts[..i]) {
+                manifolds[contact.manifold].points.remove(contact.place);
             }
-            let deepest = deepest(&part.points);
-            let mut is_served = chosen.serves(manifold);
-            let mut place = 0;
-            part.points.retain(|point| {
-                let is_deepest = !is_served && point.dist <= deepest;
-                is_served |= is_deepest;
-                place += 1;
-                is_deepest || chosen.contains(manifold, place - 1)
-            });
         }
     }
+}
+
+/// The deepest contact, and three others: each as far as possible from those before it, less its height
+/// above the deepest. The last ones are left to `parts` that have none yet. `None` if all are about equally high:
+/// then any choice will do.
+fn choose(contacts: &[PartContact], parts: usize) -> Option<Spread> {
+    let deepest = greatest(contacts, |contact| Some(-contact.distance))?;
+    let height = |contact: &PartContact| contact.distance - deepest.distance;
+    let away = |contact: &PartContact| contact.at.distance(deepest.at);
+    let extent = contacts.iter().map(away).fold(0.0, Real::max);
+    if contacts
+        .iter()
+        .all(|contact| height(contact) <= ALL_LEVEL * extent)
+    {
+        return None;
+    }
+    let mut spread = Spread::new(ONE_DEPTH * extent);
+    // Of equally deep ones, one at the rim leaves room for the others.
+    let first = greatest(contacts, |contact| {
+        (height(contact) <= spread.tie).then(|| away(contact))
+    })?;
+    spread.push(first);
+    for place in 1..MAX_POINTS {
+        let without = parts.saturating_sub(spread.parts);
+        let is_reserved = without >= MAX_POINTS - place;
+        let room = spread.room();
+        let best = greatest(contacts, |contact| {
+            let is_new = !spread.contains(contact);
+            let is_allowed = is_new && (!is_reserved || spread.would_serve(contact));
+            is_allowed.then(|| room.at(contact.at) - RISE * height(contact))
+        });
+        let Some(best) = best else {
+            break;
+        };
+        spread.push(best);
+    }
+    Some(spread)
 }
 
 /// The contact with the greatest worth, of those that have one.

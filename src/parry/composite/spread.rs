@@ -46,13 +46,13 @@ impl Spread {
         self.contacts.iter().flatten()
     }
 
-    pub fn contains(&self, manifold: usize, place: usize) -> bool {
-        self.iter()
-            .any(|contact| (contact.manifold, contact.place) == (manifold, place))
+    pub fn contains(&self, contact: &PartContact) -> bool {
+        let mut contacts = self.iter();
+        contacts.any(|other| other.manifold == contact.manifold && other.place == contact.place)
     }
 
     /// Whether a part has its deepest contact here, or one as deep.
-    pub fn serves(&self, manifold: usize) -> bool {
+    fn serves(&self, manifold: usize) -> bool {
         self.iter()
             .any(|contact| contact.manifold == manifold && contact.above <= self.tie)
     }
@@ -60,6 +60,16 @@ impl Spread {
     /// Whether it is the deepest contact, or one as deep, of a part that has none here.
     pub fn would_serve(&self, contact: &PartContact) -> bool {
         contact.above <= self.tie && !self.serves(contact.manifold)
+    }
+
+    /// Whether it is the deepest contact of a part that has none here, and the first such after those `before` it.
+    pub fn lacks(&self, contact: &PartContact, before: &[PartContact]) -> bool {
+        let mut of_part = before
+            .iter()
+            .filter(|other| other.manifold == contact.manifold);
+        contact.above <= 0.0
+            && !self.serves(contact.manifold)
+            && of_part.all(|other| other.above > 0.0)
     }
 
     /// The room that they leave.

@@ -1,5 +1,7 @@
 //! The faces that a manifold's contacts lie on, and the features in contact between them.
 
+use std::iter;
+
 use glam::Vec3;
 use parry3d::query::TrackedContact;
 use parry3d::shape::PackedFeatureId;
@@ -27,12 +29,8 @@ impl<M, C> KernelManifold<'_, M, C> {
         let deepest = points.get(last.deepest(n1.as_dvec3()))?;
         let face = |fid: fn(&TrackedContact<C>) -> PackedFeatureId| {
             let own = fid(deepest);
-            let other = || points.iter().map(fid).find(|id| is_face(*id));
-            unpack(if is_face(own) {
-                own
-            } else {
-                other().unwrap_or(own)
-            })
+            let mut ids = iter::once(own).chain(points.iter().map(fid));
+            unpack(ids.find(|id| is_face(*id)).unwrap_or(own))
         };
         let [f1, f2] = self.order.to_kernel([face(|c| c.fid1), face(|c| c.fid2)]);
         Some(FlushFaces {
