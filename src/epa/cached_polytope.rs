@@ -2,9 +2,9 @@
 //!
 //! Its vertices, re-evaluated at other poses, are again points of the Minkowski difference, and its triangles
 //! form a closed surface, oriented outwards. If the origin is on the inner side of all their planes, at least
-//! `d` away from each, the surface winds around the ball of radius `d` about the origin. So the ball is in
-//! the convex hull of the vertices, and in the difference: no direction has a smaller depth than `d`. It does
-//! not matter whether the surface is still convex, or from which pair it came.
+//! `d` away from each, the surface winds around the ball of radius `d` about the origin. So the ball lies in
+//! the convex hull of the vertices, hence in the difference, and no direction has a smaller depth than `d`. The
+//! surface need not be convex any more, and may come from another pair.
 
 use glam::DVec3;
 
@@ -20,7 +20,7 @@ const MOST_VERTICES: usize = 32;
 /// A closed surface of triangles has no more faces than this.
 const MOST_FACES: usize = 2 * MOST_VERTICES - 4;
 
-/// A surface that must grow by more than this is no better a start than the features are.
+/// A surface that needs more expansions than this is no better a start than the features are.
 const MAX_EXPANSIONS: usize = 12;
 
 /// The key of the difference's centre.
@@ -29,14 +29,14 @@ const CENTER: [u16; 2] = [u16::MAX; 2];
 /// A polytope inside a Minkowski difference, without coordinates.
 #[derive(Clone, Debug)]
 pub(super) struct CachedPolytope {
-    /// For each vertex, the vertices of the two shapes whose difference it is.
+    /// For each vertex, the two vertices, one of each shape, whose difference it is.
     vertices: [[u16; 2]; MOST_VERTICES],
-    /// Counter-clockwise seen from outside.
+    /// Counter-clockwise as seen from outside.
     faces: [[u8; 3]; MOST_FACES],
     vertex_count: u8,
-    /// Zero if the cache is empty: then it proves nothing.
+    /// Zero in an empty cache, which proves nothing.
     face_count: u8,
-    /// What was proved last.
+    /// The last proof.
     clearance: Option<Clearance>,
 }
 
@@ -53,8 +53,8 @@ impl Default for CachedPolytope {
 }
 
 impl CachedPolytope {
-    /// Whether this surface, or what it grows to in a few expansions, or what it proved earlier, proves that
-    /// [`penetration_below`](super::penetration_below) would find no smaller depth.
+    /// Whether [`penetration_below`](super::penetration_below) is known to find no smaller depth: by this surface,
+    /// after a few expansions if necessary, or by an earlier proof.
     pub fn proves_depth<A: Polytope, B: Polytope>(
         &mut self,
         cso: &Cso<'_, A, B>,
@@ -92,8 +92,8 @@ impl CachedPolytope {
         &self.faces[..self.face_count.into()]
     }
 
-    /// How far the polytope reaches in each direction outside of a cap, at least, if the origin is on the inner side of
-    /// all planes; otherwise, or without planes, negative infinity.
+    /// A lower bound of the polytope's support in all directions outside a cap. Negative infinity if the origin is not
+    /// on the inner side of all planes, or if there are none.
     fn reach(&self, polytope: &ExpandingPolytope, cap: &Cap) -> f64 {
         let mut least = f64::INFINITY;
         for face in self.faces() {
@@ -101,11 +101,11 @@ impl CachedPolytope {
             let outward = (b - a).cross(c - a);
             let height = outward.dot(a);
             let squared = height * height / outward.length_squared();
-            // Also for a face without area, whose distance is NaN.
+            // A face without area has the distance NaN, and also ends here.
             if !(height > 0.0 && squared > 0.0) {
                 return f64::NEG_INFINITY;
             }
-            // It reaches farther than its distance, and most faces are far.
+            // Along any direction a plane is no nearer than its distance, and most planes are far away.
             if squared < least {
                 least = min_no_nan(least, cap.squared_reach(outward, height));
             }
@@ -117,7 +117,7 @@ impl CachedPolytope {
         }
     }
 
-    /// Grows where the ball sticks out. If this does not help, returns `false` and changes nothing.
+    /// Expands the polytope where the ball sticks out. If this does not help, returns `false` and changes nothing.
     fn grow<A: Polytope, B: Polytope>(
         &mut self,
         cso: &Cso<'_, A, B>,
@@ -155,7 +155,7 @@ impl CachedPolytope {
     fn copy(&mut self, polytope: &ExpandingPolytope, center: DVec3) -> Option<()> {
         const NONE: u8 = u8::MAX;
         (self.vertex_count, self.face_count) = (0, 0);
-        // From the polytope's vertices to ours. Many of the former are inside by now.
+        // Maps the polytope's vertices to ours. Many of the former are inside the surface by now.
         let mut numbers = [NONE; 4 * MOST_VERTICES];
         for corners in polytope.surface() {
             let face = self.faces.get_mut(usize::from(self.face_count))?;
@@ -235,7 +235,7 @@ mod tests {
         })
     }
 
-    /// Two random poses, a motion of this size apart.
+    /// Two random poses that differ by a motion of this size.
     fn poses(motion: f64, rng: &mut oorandom::Rand64) -> [RelativePose; 2] {
         let [turn, place, turned, moved] = [(); 4].map(|()| vector(rng));
         [0.0, motion].map(|motion| {
@@ -245,7 +245,7 @@ mod tests {
         })
     }
 
-    /// What the polytope of an expansion proves of the nearest facet, and its triangles.
+    /// The cached polytope of an expansion, its nearest facet, and its triangles.
     fn prove(cso: &Cso<'_, Hull, Hull>) -> Option<(Clearance, Vec<[CsoVertex; 3]>)> {
         let (scratch, cost) = (&mut EpaScratch::default(), &mut Cost::default());
         penetration(cso, &[], scratch, cost)?;
@@ -258,7 +258,7 @@ mod tests {
         Some((cached.clearance?, surface))
     }
 
-    /// After small and large motions, and of all facets, one of which is the nearest.
+    /// Small and large motions; all facets, one of which is the nearest.
     #[test]
     fn what_was_proved_before_a_motion_is_true_after_it() {
         let mut rng = oorandom::Rand64::new(5);

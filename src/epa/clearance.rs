@@ -1,12 +1,13 @@
-//! How deep two shapes overlap in all directions but those over one facet, while they hardly move.
+//! A bound on the depth in all directions except those over one facet, which holds while the shapes hardly move.
 //!
-//! A disc in the plane of a facet of the Minkowski difference, around the place that the origin projects to, reaches
-//! as far as the plane in all directions of a cap around its normal; half of the angle of the cap has the tangent
-//! `inset / depth`. If the difference reaches as far in all other directions, no direction has a smaller depth.
+//! Take a disc in the plane of a facet of the Minkowski difference, around the projection of the origin. In all
+//! directions of a cap around the facet's normal, the support of the disc is at least the facet's depth; the tangent
+//! of half of the cap's angle is `inset / depth`. If the support of the difference is as large in all other
+//! directions, no direction has a smaller depth.
 //!
-//! The planes of a polytope in the difference show how far that reaches: the part of a ball beneath those that
-//! cut it lies in the polytope. When the shapes move, the difference reaches less far by no more than the way of
-//! the fastest point. So a proof for all directions outside of a cap holds for some time.
+//! The planes of a polytope inside the difference bound that support: the part of a ball that is beneath the planes
+//! that cut it lies in the polytope. When the shapes move, the support shrinks by at most the way of the fastest
+//! point. So a proof for all directions outside a cap holds for some time.
 
 use glam::DVec3;
 
@@ -17,16 +18,16 @@ use crate::tuning::{CAP_SHARE, WIDE_CAP};
 /// A facet of the Minkowski difference that may be the nearest.
 #[derive(Clone, Copy, Debug)]
 pub struct KnownDepth {
-    /// How far the origin is beneath its plane.
+    /// The distance of the origin beneath its plane.
     pub depth: f64,
     /// Its outward unit normal, in frame 1.
     pub normal: DVec3,
-    /// How far from its sides the origin projects into it; if it is not positive, it says nothing.
+    /// The distance of the origin's projection from the facet's sides. If it is not positive, it means nothing.
     pub inset: f64,
 }
 
 impl KnownDepth {
-    /// The directions that the facet covers, or those with this share of the tangent.
+    /// The directions that the facet covers, with this share of the tangent.
     fn cap(&self, share: f64) -> Cap {
         let tangent = share * (self.inset / self.depth).clamp(0.0, 1.0);
         let squared = tangent * tangent;
@@ -37,12 +38,12 @@ impl KnownDepth {
         }
     }
 
-    /// Whether the facet covers so many directions that a proof of the others lasts.
+    /// Whether the facet covers enough directions for a proof of the others to last.
     pub(super) fn is_wide(&self) -> bool {
         self.inset >= WIDE_CAP * self.depth
     }
 
-    /// Directions that the facet covers now, and after a small motion; none but the normal if these are few.
+    /// Directions that the facet covers now, and still covers after a small motion; only the normal if these are few.
     pub(super) fn narrow_cap(&self) -> Cap {
         self.cap(if self.is_wide() { CAP_SHARE } else { 0.0 })
     }
@@ -57,12 +58,12 @@ pub(super) struct Cap {
 }
 
 impl Cap {
-    /// How far, squared, the part of space beneath a plane reaches in each direction outside of the cap. The normal of
-    /// the plane has any length, and the origin this height beneath it times that length.
+    /// The square of the least distance from the origin to a plane, measured along directions outside the cap. The
+    /// normal may have any length; `height` is that length times the distance of the origin beneath the plane.
     pub fn squared_reach(&self, outward: DVec3, height: f64) -> f64 {
         let (along, squared) = (outward.dot(self.axis), outward.length_squared());
         let along_squared = along * along;
-        // The cosine of the angle from the normal to the nearest direction outside.
+        // The cosine of the angle between the normal and the nearest direction outside the cap.
         let cos = if along > 0.0 && along_squared >= self.cos * self.cos * squared {
             let across = (squared - along_squared).max(0.0).sqrt();
             let cos = self.cos * along + self.sin * across;
@@ -73,7 +74,7 @@ impl Cap {
         height * height / cos
     }
 
-    /// Whether it contains another one.
+    /// Whether this cap contains another one.
     fn contains(&self, other: &Self) -> bool {
         // A chord is longer than the sine.
         let turned = self.axis.distance(other.axis);
@@ -81,12 +82,12 @@ impl Cap {
     }
 }
 
-/// What a polytope has proved of two shapes at some pose.
+/// What a polytope has proved about two shapes at some pose.
 #[derive(Clone, Debug)]
 pub(super) struct Clearance {
     shapes: [ShapeId; 2],
     pose: RelativePose,
-    /// Outside of this cap, the difference reaches at least so far.
+    /// In directions outside this cap, the support of the difference is at least `reach`.
     cap: Cap,
     reach: f64,
 }
@@ -101,7 +102,7 @@ impl Clearance {
         })
     }
 
-    /// Whether the difference reaches at least `radius` in each direction that the facet does not cover.
+    /// Whether the support of the difference is at least `radius` in each direction that the facet does not cover.
     pub fn proves<A: Support, B: Support>(
         &self,
         cso: &Cso<'_, A, B>,

@@ -1,13 +1,13 @@
 //! Penetration depth by the expanding polytope algorithm (van den Bergen, *Proximity queries and
 //! penetration depth computation on 3D game objects*, GDC 2001).
 //!
-//! A polytope inside the Minkowski difference grows by support points along the normal of the
-//! face whose plane is nearest to the origin, until that face cannot be pushed out: its plane
-//! then bounds the depth from above (a support plane) and from below (the nearest face).
+//! A polytope inside the Minkowski difference is expanded by support points along the normal of the
+//! face whose plane is nearest to the origin, until that face cannot be pushed out. Its plane then
+//! bounds the depth from above, as a supporting plane, and from below, as the nearest face.
 //!
 //! The distances of faces are signed, and negative where the origin lies beyond the face. So the origin may
-//! lie anywhere at the start, on a vertex, an edge or a face, or even outside: touching configurations are no
-//! special case. The first polytope need only have volume.
+//! start anywhere: on a vertex, an edge or a face, or even outside. Touching shapes are no special case, and
+//! the first polytope only needs volume.
 
 mod cached_polytope;
 mod clearance;
@@ -28,7 +28,7 @@ use crate::support::{Cso, CsoVertex, Support};
 use crate::tolerance::DEPTH_GAP;
 use polytope::ExpandingPolytope;
 
-/// Identical fine spheres need a face for every pair of facets. No reasonable input needs more.
+/// Two identical fine spheres need a face for every pair of facets. No reasonable input needs more.
 const MAX_EXPANSIONS: u32 = 50_000;
 
 /// How deep two shapes overlap, in frame 1.
@@ -57,11 +57,11 @@ pub struct Penetration {
 ///
 /// Polytopes, and curved shapes in general position, take tens of expansions. If a curved pair has a whole
 /// circle of directions with the least depth (cylinders, cones and balls on a common axis), the polytope must
-/// become as round as the tolerance requires: this takes 2,000 to 7,200 expansions, up to a second or two.
+/// become as round as the tolerance requires. This takes 2,000 to 7,200 expansions, up to two seconds.
 ///
 /// Along the normal, the distance of the witness points is the depth, up to the tolerance. Across the normal
-/// it may be larger, if the face found is a part of a larger facet: 3e-5 of the size for parallel cylinders
-/// sixteen times as long as wide.
+/// it may be larger if the face found is part of a larger facet: 3e-5 of the size for parallel cylinders that
+/// are sixteen times as long as wide.
 pub fn penetration<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     seeds: &[CsoVertex],
@@ -75,7 +75,7 @@ pub fn penetration<A: Support, B: Support>(
 }
 
 /// The penetration depth, as [`penetration`] finds it, if it is less than `known_depth` by more than the
-/// tolerance. Otherwise [`DepthSearch::NotBelow`]: then no depth is less by more than twice the tolerance.
+/// tolerance. Otherwise [`DepthSearch::NotBelow`]: no depth is less by more than twice the tolerance.
 pub fn penetration_below<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     seeds: &[CsoVertex],
@@ -87,7 +87,7 @@ pub fn penetration_below<A: Support, B: Support>(
     penetration_within(cso, seeds, [known_depth, tolerance], scratch, cost)
 }
 
-/// As [`penetration_below`], with bounds that may differ by another tolerance.
+/// Like [`penetration_below`], with another tolerance for the difference of the bounds.
 pub fn penetration_within<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     seeds: &[CsoVertex],
@@ -115,7 +115,7 @@ pub fn penetration_within<A: Support, B: Support>(
         };
         let (normal, distance) = polytope.plane(face);
         cost.iterations += 1;
-        // The climbs mostly end farther from the corners of the face.
+        // Most climbs end farther away than the corners of the face.
         let w = cso.support(normal, cso.start_vertices(normal), cost);
         let depth = normal.dot(w.w);
         let is_bound = depth - distance <= tolerance;
@@ -159,13 +159,13 @@ pub enum DepthSearch {
     Found(Penetration),
 }
 
-/// The witness points on a face: where the origin projects to, or the nearest point of the triangle. (If the
+/// The witness points on a face: at the projection of the origin, or at the nearest point of the triangle. (If the
 /// triangle is part of a larger facet, the projection may lie outside the triangle.)
 fn witness(polytope: &ExpandingPolytope, face: u32, [lower_bound, depth]: [f64; 2]) -> Penetration {
     let (normal, _) = polytope.plane(face);
     let face = polytope.corners(face);
     debug_assert!(is_unit(normal), "no unit vector: {normal}");
-    // Measured from the foot of the normal, so that the depth does not drown the position in rounding.
+    // Measured from the foot of the normal: next to a large depth, the position would be lost in rounding.
     let foot = normal * depth;
     let nearest = Preferred::nearest(&face.map(|v| v.w - foot));
     let combine = |on: fn(&CsoVertex) -> DVec3| -> DVec3 {

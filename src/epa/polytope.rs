@@ -1,4 +1,4 @@
-//! The expanding polytope: a closed triangulated surface with adjacency, and a heap of faces, ordered by
+//! The expanding polytope: a closed triangulated surface with adjacency, and a heap of its faces ordered by
 //! signed distance from the origin.
 
 use std::cmp::Ordering;
@@ -49,7 +49,7 @@ impl Face {
     }
 }
 
-/// A heap entry. The greatest is the nearest face, and the oldest among faces that are equally near.
+/// A heap entry. The greatest is the nearest face; of equally near faces, the oldest.
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     distance: f64,
@@ -107,8 +107,8 @@ impl ExpandingPolytope {
         self.vertices.push(vertex);
     }
 
-    /// Adds the triangles of a closed surface over the vertices pushed so far. `false` if the triangles at an
-    /// edge are ambiguous: the edge occurs twice, or has no other side.
+    /// Adds the triangles of a closed surface over the vertices pushed so far. Returns `false` if an edge occurs
+    /// twice in the same direction, or has no triangle on its other side.
     pub fn add_surface(&mut self, triangles: &[[u8; 3]]) -> bool {
         const NONE: FaceEdge = FaceEdge::MAX;
         let count = self.vertices.len();
@@ -145,7 +145,7 @@ impl ExpandingPolytope {
         debug_assert!(is_closed, "each of its edges is there once each way");
     }
 
-    /// The living face whose plane is nearest to the origin.
+    /// The face whose plane is nearest to the origin, among those still on the surface.
     pub fn nearest_face(&mut self) -> Option<u32> {
         while let Some(top) = self.heap.peek() {
             if self.faces[top.face as usize].alive {
@@ -156,7 +156,7 @@ impl ExpandingPolytope {
         None
     }
 
-    /// The outward unit normal of a face, and the signed distance of the origin below its plane.
+    /// The outward unit normal of a face, and the signed distance of the origin beneath its plane.
     pub fn plane(&self, face: u32) -> (DVec3, f64) {
         let face = &self.faces[face as usize];
         (face.normal, face.distance)
@@ -195,7 +195,7 @@ impl ExpandingPolytope {
         self.search_radius = self.search_radius.min(search_radius);
     }
 
-    /// Expands to a given point of the difference, if that is outside.
+    /// Expands the polytope to a given point of the difference, if that is outside.
     pub fn insert_if_outside(&mut self, vertex: &CsoVertex) {
         let is_outside = |face: &Face| face.alive && face.height(vertex.w) > self.coplanar;
         if let Some(face) = self.faces.iter().position(is_outside) {
@@ -222,7 +222,7 @@ impl ExpandingPolytope {
             let [a, b] = self.edge_corners(outside);
             let next = if new == last { first } else { new + 1 };
             let previous = if new == first { last } else { new - 1 };
-            // Seen from the new face the shared edge runs the other way.
+            // As seen from the new face, the shared edge runs the other way.
             let across = [outside, face_edge(next, 2), face_edge(previous, 1)];
             self.add([b, a, apex], across);
             self.faces[face_of(outside) as usize].across[number(outside)] = face_edge(new, 0);
@@ -237,8 +237,8 @@ impl ExpandingPolytope {
         [corners[k], corners[NEXT[k]]]
     }
 
-    /// Collects the edges around the faces visible from `w` in order, each as the remaining face sees it, and
-    /// marks the visible faces as dead.
+    /// Collects the edges around the faces that are visible from `w`, in order, each as the remaining face sees it.
+    /// Marks the visible faces as dead.
     fn find_horizon(&mut self, face: u32, w: DVec3) {
         self.horizon.clear();
         self.visible.clear();
@@ -274,7 +274,7 @@ impl ExpandingPolytope {
         let Some(&last) = self.horizon.last() else {
             return false;
         };
-        // Seen from outside the visible region, the loop runs backwards.
+        // As seen from outside the visible region, the loop runs backwards.
         let [mut before, _] = self.edge_corners(last);
         self.horizon.len() >= 3
             && self.horizon.iter().all(|&edge| {
@@ -314,7 +314,7 @@ impl ExpandingPolytope {
     }
 }
 
-/// Memory for expansions. It is kept from query to query, so that queries do not allocate.
+/// Memory for expansions, kept from query to query so that queries do not allocate.
 #[derive(Clone, Debug, Default)]
 pub struct EpaScratch {
     pub(super) polytope: ExpandingPolytope,
@@ -330,7 +330,7 @@ impl EpaScratch {
     }
 }
 
-/// The lesser of two numbers. Neither is NaN, so the check for it in `f64::min` is not needed.
+/// The lesser of two numbers. Neither may be NaN: this saves the check in `f64::min`.
 pub(super) fn min_no_nan(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
 }

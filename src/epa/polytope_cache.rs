@@ -7,19 +7,18 @@ use crate::slot::slot;
 use crate::stats::Cost;
 use crate::support::{Cso, Polytope, Support};
 
-/// How many pairs the cache holds, if no two share a slot.
+/// How many pairs the cache holds if no two share a slot.
 const SLOTS: usize = 1 << SLOT_BITS;
 const SLOT_BITS: u32 = 11;
 
-/// A new entry, or one that has just proved a depth, survives this many attempts to replace it. If there are
-/// more pairs than slots, some pairs have proofs and the others lose little.
+/// A new entry, or one that has just proved a depth, survives this many attempts to replace it. With more pairs
+/// than slots, some pairs keep their proofs, and the others lose little.
 const PROTECTED_MISSES: u8 = 16;
 
-/// Polytopes that were expanded for pairs in earlier frames, to prove that their depths are the least. A pair
-/// is found by a key, which may be any number that stays the same from frame to frame.
+/// Polytopes that were expanded for pairs in earlier frames. They prove that depths are the least. A pair's key may
+/// be any number that stays the same from frame to frame.
 ///
-/// Whether an entry is kept or lost changes only how long an answer takes. A key that now stands for another
-/// pair does no harm.
+/// A lost entry only costs time. A key that now stands for another pair does no harm.
 #[derive(Clone, Debug)]
 pub struct PolytopeCache(Box<[CacheSlot]>);
 
@@ -38,7 +37,7 @@ impl Default for PolytopeCache {
 }
 
 impl PolytopeCache {
-    /// Whether the cached polytope of this pair, or what it grows to in a few expansions, proves that
+    /// Whether the cached polytope of this pair, after a few expansions if necessary, proves that
     /// [`penetration_below`](super::penetration_below) would find no smaller depth.
     pub fn proves_depth<A: Polytope, B: Polytope>(
         &mut self,

@@ -7,7 +7,7 @@ use crate::support::{Cso, CsoVertex, Support};
 use crate::tolerance::DEGENERATE;
 use crate::tuning::GOOD_SEED;
 
-/// Four points with volume, from `seeds` if these have volume, and otherwise from support points.
+/// Four points that span a volume: of `seeds` if these do, and support points otherwise.
 pub(super) fn tetrahedron<A: Support, B: Support>(
     cso: &Cso<'_, A, B>,
     seeds: &[CsoVertex],
@@ -43,7 +43,7 @@ struct SeedSearch<'a, 's, A, B> {
 }
 
 impl<A: Support, B: Support> SeedSearch<'_, '_, A, B> {
-    /// The point for which `measure` is largest, if that is not degenerate.
+    /// The point with the largest `measure`, unless that is degenerate.
     fn farthest(
         &self,
         directions: &[DVec3],

@@ -13,8 +13,8 @@ use crate::support::{Cso, FaceId, Polytope};
 use crate::tuning::STILL;
 
 impl<M, C> KernelManifold<'_, M, C> {
-    /// The faces that the contacts lie on, if these hardly moved: those that a contact names, or else those beside
-    /// the features of the deepest.
+    /// The faces that the contacts lie on, if the contacts hardly moved: faces that a contact names, or else faces
+    /// beside the features of the deepest contact.
     pub fn flush_faces<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
@@ -42,9 +42,9 @@ impl<M, C> KernelManifold<'_, M, C> {
         })
     }
 
-    /// Leaves the features in contact to the next frame, with the deepest contact. They may be those of a corner
-    /// without a contact, hardly deeper than this one. If both corners touch the same face, the next query starts
-    /// there in any case.
+    /// Stores the features in contact in the deepest contact, for the next frame. They may belong to a corner without
+    /// a contact, hardly deeper than this one. If both corners touch the same face, the next query starts there
+    /// anyway.
     #[inline]
     pub fn name_deepest(&mut self, deepest: usize, features: [Feature; 2]) {
         let ids = self.order.to_caller(map_pair(features, pack));
@@ -61,7 +61,7 @@ fn is_face(id: PackedFeatureId) -> bool {
     matches!(unpack(id), Some(Feature::Face(_)))
 }
 
-/// Gives a contact these features, unless another one has them, or they name no single place.
+/// Gives a contact these features, unless another contact has them or they do not determine a single place.
 #[inline(never)]
 fn rename<C>(contacts: &mut [TrackedContact<C>], contact: usize, ids: [PackedFeatureId; 2]) {
     let [Some(f1), Some(f2)] = ids.map(unpack) else {
@@ -74,7 +74,7 @@ fn rename<C>(contacts: &mut [TrackedContact<C>], contact: usize, ids: [PackedFea
     }
 }
 
-/// The face that a feature is, or that beside it which looks outwards most.
+/// The face itself if the feature is one; otherwise the adjacent face that faces outward most.
 fn face_of(shape: &impl Polytope, feature: Feature, outward: Vec3) -> Option<FaceId> {
     let is_there = match feature {
         Feature::Face(face) => shape.has_face(face),

@@ -1,9 +1,9 @@
 //! Contact hysteresis: contacts keep their places while the shapes hardly move.
 //!
 //! A solver starts from the impulses of the previous step, which only fit contacts that are still
-//! where they were. If the points are chosen anew in each step, a heap of small bodies never comes to
-//! rest, although each choice is right. So while the two points of each contact stay close together,
-//! the manifold keeps them, and only its normal and its distances are measured anew.
+//! where they were. If points are chosen anew in each step, a heap of small bodies never comes to rest,
+//! although each choice is right. So while the two points of each contact stay close together, the
+//! manifold keeps them, and only its normal and its distances are measured anew.
 //!
 //! The query of the present step vouches for what is kept. Its normal `n` and its signed distance `d`
 //! are exact: along `n` the shapes lie on either side of two supporting planes that are `d` apart.
@@ -23,7 +23,7 @@ use crate::tolerance::{KEPT_ANGLE_COS, KEPT_DEPTH, KEPT_DRIFT};
 
 impl<M, C> KernelManifold<'_, M, C> {
     /// Reads the contacts at the present pose, if there are any. Lanes beyond the last contact repeat it.
-    // perf: inlined, it costs pairs that are apart 3 % more instructions. Returned, the contacts would be copied: 1 %
+    // perf: inlining it costs pairs that are apart 3 % more instructions. Returning the contacts would copy them: 1 %
     // more in touching/8.
     #[inline(never)]
     pub fn read_contacts(&self, pose: &RelativePose, last: &mut Option<LastContacts>) {
@@ -47,7 +47,7 @@ impl<M, C> KernelManifold<'_, M, C> {
 
     /// Measures the contacts anew where they are. Returns `false`, and changes nothing, if they have to be
     /// chosen anew. `radius` is that of the smaller shape.
-    // perf: in a call the normals would go through memory.
+    // perf: a call would pass the normals through memory.
     #[inline(always)]
     pub fn keep_contacts(
         &mut self,
@@ -63,7 +63,7 @@ impl<M, C> KernelManifold<'_, M, C> {
         kept.is_some()
     }
 
-    /// The same, without new names: the number of the deepest contact if they stay.
+    /// The same without new feature ids. Returns the index of the deepest contact if the contacts stay.
     #[inline]
     pub fn keep_places(
         &mut self,
@@ -98,7 +98,7 @@ impl<M, C> KernelManifold<'_, M, C> {
 }
 
 impl Normals {
-    /// Whether they are about those of the manifold.
+    /// Whether they are close to those of the manifold.
     #[inline]
     fn are_near(&self, [old_1, old_2]: [Vec3; 2]) -> bool {
         let [new_1, new_2] = self.exact;

@@ -1,15 +1,15 @@
 //! Two faces that lie flush on each other, as those of bodies at rest do.
 //!
-//! All corners of their patch are about equally deep, and lie on the rims of both faces. So the facet of the deepest one
-//! proves little by itself: the origin projects to its border, or a little beside it.
+//! All corners of their patch are about equally deep, and lie on the borders of both faces. So the facet of the deepest
+//! corner proves little by itself: the origin projects onto its border, or a little beside it.
 //!
-//! But the differences of points of both faces around a place in the middle fill a disc across the normal. With the
-//! deepest vertex they span a point over the origin: it is as deep as the vertex, but for the share of the slope by
-//! which the vertex is beside the face.
+//! But the differences of points of both faces, around a place in the middle, fill a disc across the normal. A segment
+//! from the deepest vertex to that disc passes over the origin. There it is as deep as the vertex, except for the slope
+//! of the faces over the distance of the vertex from the face.
 //!
-//! Where the shapes overlap, they prove a depth as well. The flat cone from that point to the disc lies in the
-//! Minkowski difference, as does the one from the disc to its centre. The ball of the depth looks out of the flat cone
-//! by the angle between the faces squared only.
+//! Where the shapes overlap, this also proves a depth. The flat cone from that point to the disc lies in the Minkowski
+//! difference, and so does the cone from the disc to the centre. The ball of that depth sticks out of the flat cone by
+//! no more than the square of the angle between the faces.
 
 use glam::DVec3;
 
@@ -21,24 +21,24 @@ use crate::simd::LANES;
 use crate::support::{Cso, FaceId, Polytope};
 use crate::tolerance::{DEPTH_GAP, KEPT_ANGLE_COS};
 
-/// A face of each shape, and the middle of the contacts between them. In frame 1.
+/// A face of each shape, and the middle of the contacts between them, in frame 1.
 pub(crate) struct FlushFaces {
     pub faces: [FaceId; 2],
     pub middle: DVec3,
 }
 
-/// Points of the planes of both faces on one line along a normal, each in the frame of its shape.
+/// The points in which a line along a normal meets the planes of both faces, each in the frame of its shape.
 struct PointPair {
     on_planes: [DVec3; 2],
     /// From the first to the second.
     distance: f64,
 }
 
-/// Differences of points of both faces: a disc across a normal, around the line along it through the origin. As
-/// distances between the shapes.
+/// Differences of points of both faces: a disc across a normal, around the line through the origin along it. Heights
+/// are given as distances between the shapes.
 struct Disc {
     radius: f64,
-    /// Of the farthest of these points.
+    /// The greatest distance in the disc.
     highest: f64,
 }
 
@@ -53,10 +53,9 @@ impl FlushFaces {
         }
     }
 
-    /// Whether the signed distance of the shapes is at most this, if the vertex of shape 2 that is deepest beneath the
-    /// plane of the face of shape 1 has this `signed_distance` from it. The vertex is over the face, or a little beside
-    /// it.
-    // perf: in its caller, it would keep a query from being inlined: 2 % more instructions in touching/8.
+    /// Whether the signed distance of the shapes is at most `most`. The vertex of shape 2 that is deepest beneath the
+    /// plane of the face of shape 1 is at `signed_distance` from that plane, over the face or a little beside it.
+    // perf: inlined, it keeps the query around it from being inlined: 2 % more instructions in touching/8.
     #[inline(never)]
     pub fn prove_vertex<A: Polytope, B: Polytope>(
         &self,
@@ -84,7 +83,7 @@ impl FlushFaces {
         })
     }
 
-    /// Whether flush faces prove that no direction has a smaller depth than the candidate.
+    /// Whether these faces prove that no direction has a smaller depth than the candidate.
     pub fn is_depth<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
@@ -98,7 +97,7 @@ impl FlushFaces {
             })
     }
 
-    /// Whether both faces look along a normal.
+    /// Whether both faces are nearly square to a normal, and face each other.
     #[inline]
     fn are_along<A: Polytope, B: Polytope>(&self, cso: &Cso<'_, A, B>, normal: DVec3) -> bool {
         let [face_1, face_2] = self.faces;
@@ -108,7 +107,7 @@ impl FlushFaces {
             && cso.shape_2.face_normal(face_2).dot(normal_2) < -KEPT_ANGLE_COS
     }
 
-    /// The points of both planes in the middle, of faces that look along the normal.
+    /// The points of both planes in the middle of the contacts. Both faces must be nearly square to the normal.
     #[inline]
     fn points_at<A: Polytope, B: Polytope>(&self, cso: &Cso<'_, A, B>, normal: DVec3) -> PointPair {
         let ([face_1, face_2], place) = (self.faces, self.middle);
@@ -128,8 +127,8 @@ impl FlushFaces {
         }
     }
 
-    /// Whether a disc around points in the middle proves something. One in quadrilaterals within the faces is half as
-    /// large, and mostly does.
+    /// Whether some disc around the middle passes a test. The first one lies in quadrilaterals within the faces. It is
+    /// half as large as the second, and usually suffices.
     fn some_disc<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
@@ -153,7 +152,7 @@ impl FlushFaces {
         has_more && disc(Corners::All).is_some_and(|disc| proves(&disc))
     }
 
-    /// The disc around points in the middle of both faces, which are so far inside of these.
+    /// The disc around points in the middle of both faces, with their distances from the borders of these.
     #[inline]
     fn disc<A: Polytope, B: Polytope>(
         &self,
@@ -175,7 +174,7 @@ impl FlushFaces {
         }
     }
 
-    /// How far points of the planes are inside of the faces, if they are.
+    /// The distances of points of the planes from the borders of the faces, if they are inside.
     #[inline]
     fn insets<A: Polytope, B: Polytope>(
         &self,
@@ -198,8 +197,8 @@ impl FlushFaces {
 }
 
 impl Disc {
-    /// Whether no direction has a smaller depth than `-most`, if the difference of the shapes has a point over the
-    /// origin along a normal at the signed distance `over_origin`.
+    /// Whether no direction has a smaller depth than `-most`, given a point of the difference over the origin, along a
+    /// normal, at the signed distance `over_origin`.
     #[inline]
     fn proves<A: Polytope, B: Polytope>(
         &self,
