@@ -54,7 +54,7 @@ pub const FLAT_EDGE: f64 = 2e-6;
 /// An edge is steep if each of its triangles is this share of the radius above the other one's far corner. It
 /// is far above what rounding a normal to f32 can lift a neighbour: if all edges at a vertex are steep, the
 /// vertex is the highest of its neighbours over each of its triangles.
-pub const STEEP_EDGE: f64 = 1e-4;
+pub const STEEP_EDGE: f64 = 1e-5;
 
 /// The corners of a flat side are at most this share of the radius from one plane. Then each of its diagonals
 /// is a [`FLAT_EDGE`].

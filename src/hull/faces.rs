@@ -35,6 +35,15 @@ pub(super) struct FaceRecord {
 pub(super) const BESIDE_LIKE: u32 = 1 << 31;
 
 impl FaceRecord {
+    /// What comes after the last face: only where its corners end is read.
+    pub(super) fn end(corners: &[FaceCorner]) -> Self {
+        Self {
+            normal: Vec3::ZERO,
+            first: corners.len() as u32,
+            offset: f64::INFINITY,
+        }
+    }
+
     #[inline]
     fn first(&self) -> usize {
         (self.first & !BESIDE_LIKE) as usize

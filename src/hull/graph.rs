@@ -16,6 +16,17 @@ pub(super) struct FaceCorner {
     pub(super) slot: u16,
 }
 
+impl FaceCorner {
+    /// A corner at a vertex, whose number fits into 16 bits.
+    #[inline]
+    pub fn new(vertex: u32, slot: u16) -> Self {
+        Self {
+            vertex: vertex as u16,
+            slot,
+        }
+    }
+}
+
 /// The slot of a side that is no edge, but cuts across faces.
 pub(super) const NO_EDGE: u16 = u16::MAX;
 

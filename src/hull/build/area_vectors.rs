@@ -3,20 +3,16 @@
 use glam::{DVec3, Vec3};
 
 use crate::at::At;
-use crate::simd::{DVec3x4, LANES, f64x4, sum, widened};
 use crate::tolerance::MIN_TRIANGLE_HEIGHT;
 
 /// The triangles of a surface as vectors.
 pub(super) struct AreaVectors {
     pub triangles: Vec<AreaVector>,
-    /// Six times the volume inside.
-    pub volume: f64,
-    /// Its centre from the first point, times four times that.
-    pub moment: DVec3,
+    pub inside: Volume,
 }
 
 /// A triangle as a vector, and how its corners lie along it.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct AreaVector {
     /// Twice the area vector.
     pub vector: DVec3,
@@ -29,36 +25,49 @@ pub(super) struct AreaVector {
     pub lowest: f64,
 }
 
+/// The volume inside a surface, triangle by triangle.
+#[derive(Clone, Copy)]
+pub(super) struct Volume {
+    /// A point of the surface.
+    pub origin: DVec3,
+    /// Six times the volume.
+    pub volume: f64,
+    /// Its centre from the origin, times four times that.
+    pub moment: DVec3,
+}
+
+impl Volume {
+    pub fn new(origin: DVec3) -> Self {
+        Self {
+            origin,
+            volume: 0.0,
+            moment: DVec3::ZERO,
+        }
+    }
+
+    /// Adds a triangle: a corner, the sides that leave it, and their cross product.
+    #[inline]
+    pub fn add(&mut self, a: DVec3, [ab, ac]: [DVec3; 2], vector: DVec3) {
+        let from_origin = a - self.origin;
+        let inside = vector.dot(from_origin);
+        self.volume += inside;
+        self.moment += (from_origin * 3.0 + (ab + ac)) * inside;
+    }
+}
+
 impl AreaVectors {
     pub fn new(points: &[DVec3], triangles: &[[u32; 3]]) -> Self {
-        let mut vectors = Vec::with_capacity(triangles.len());
-        let origin = points[0];
-        let (mut volume, mut moment) = (f64x4::ZERO, DVec3x4([f64x4::ZERO; 3]));
-        let mut add = |[one, two, three, four]: [&[u32; 3]; LANES], count: usize| {
-            let corner = |k: usize| {
-                let four = [one[k], two[k], three[k], four[k]];
-                DVec3x4::gather(four, |v| points.at(v))
-            };
-            let (a, b, c) = (corner(0), corner(1), corner(2));
-            let vector = push_four(&mut vectors, [a, b, c], count);
-            // Triangles that only fill up the last four span no volume.
-            let (a, b, c) = (a - origin, b - origin, c - origin);
-            let inside = vector.dot_each(a) * f64x4::new(COUNTED[count]);
-            volume += inside;
-            moment = moment + (a + b + c) * inside;
-        };
-        let (fours, rest) = triangles.as_chunks::<LANES>();
-        for [one, two, three, four] in fours {
-            add([one, two, three, four], LANES);
-        }
-        if let [first, others @ ..] = rest {
-            let [second, third] = [0, 1].map(|i| others.get(i).unwrap_or(first));
-            add([first, second, third, first], rest.len());
-        }
+        let mut inside = Volume::new(points[0]);
+        let measured = triangles.iter().map(|&[a, b, c]| {
+            let a = points.at(a);
+            let sides = [points.at(b) - a, points.at(c) - a];
+            let triangle = AreaVector::new(a, sides);
+            inside.add(a, sides, triangle.vector);
+            triangle
+        });
         Self {
-            triangles: vectors,
-            volume: sum(volume),
-            moment: moment.sum(),
+            triangles: measured.collect(),
+            inside,
         }
     }
 
@@ -78,46 +87,35 @@ impl AreaVectors {
 }
 
 impl AreaVector {
+    /// From a corner, and the sides that leave it.
+    #[inline]
+    pub fn new(a: DVec3, [ab, ac]: [DVec3; 2]) -> Self {
+        let vector = ab.cross(ac);
+        let area = vector.length();
+        let normal = (vector * (1.0 / area)).as_vec3();
+        let rounded = normal.as_dvec3();
+        let at_a = rounded.dot(a);
+        // No value is NaN where it matters, so the NaN checks of `f64::max` and `f64::min` are not needed.
+        let (mut highest, mut lowest) = (0.0, 0.0);
+        for height in [rounded.dot(ab), rounded.dot(ac)] {
+            highest = if height > highest { height } else { highest };
+            lowest = if height < lowest { height } else { lowest };
+        }
+        Self {
+            vector,
+            area,
+            normal,
+            highest: at_a + highest,
+            lowest: at_a + lowest,
+        }
+    }
+
     /// Whether the angle between the triangles is at most the one with this cosine.
     #[inline]
     pub fn is_within(&self, cosine: f64, other: &Self) -> bool {
         self.vector.dot(other.vector) >= cosine * self.area * other.area
     }
 }
-
-/// Adds the first `count` of four triangles with these corners, and returns twice the area vectors of all.
-#[inline]
-fn push_four(vectors: &mut Vec<AreaVector>, [a, b, c]: [DVec3x4; 3], count: usize) -> DVec3x4 {
-    let vector = (b - a).cross(c - a);
-    let area = vector.length_squared().sqrt();
-    let rounded = (vector * (f64x4::ONE / area)).to_f32x4();
-    let normal = DVec3x4(rounded.map(|row| widened(row.to_array())));
-    let (at_a, at_b, at_c) = (normal.dot_each(a), normal.dot_each(b), normal.dot_each(c));
-    let highest = at_a.fast_max(at_b).fast_max(at_c).to_array();
-    let lowest = at_a.fast_min(at_b).fast_min(at_c).to_array();
-    let [u, v, w] = vector.0.map(f64x4::to_array);
-    let [x, y, z] = rounded.map(|row| row.to_array());
-    let areas = area.to_array();
-    for lane in 0..count {
-        vectors.push(AreaVector {
-            vector: DVec3::new(u[lane], v[lane], w[lane]),
-            area: areas[lane],
-            normal: Vec3::new(x[lane], y[lane], z[lane]),
-            highest: highest[lane],
-            lowest: lowest[lane],
-        });
-    }
-    vector
-}
-
-/// One in so many lanes, zero in the others.
-const COUNTED: [[f64; LANES]; LANES + 1] = [
-    [0.0, 0.0, 0.0, 0.0],
-    [1.0, 0.0, 0.0, 0.0],
-    [1.0, 1.0, 0.0, 0.0],
-    [1.0, 1.0, 1.0, 0.0],
-    [1.0, 1.0, 1.0, 1.0],
-];
 
 pub(super) fn longest_side(points: &[DVec3], triangle: [u32; 3]) -> f64 {
     let [a, b, c] = triangle.map(|v| points.at(v));

@@ -11,45 +11,58 @@ use crate::at::At;
 use crate::hull::lists::Rows;
 use crate::tuning::SEEMS_FLAT;
 
-/// The triangles of a polyhedron whose faces are its flat sides, with diagonals that depend only on its
-/// points, in the order of their corners. `None` for others.
-pub(super) fn triangles_of_flat_sides(
-    polyhedron: &ConvexPolyhedron,
-    points: &[DVec3],
-    radius: f64,
-) -> Option<Vec<[u32; 3]>> {
-    let mut triangles = Vec::with_capacity((2 * points.len()).checked_sub(4)?);
-    // The border of the first of the two sides along each edge.
-    let mut borders: Vec<Option<SideBorder>> = vec![None; polyhedron.edges().len()];
-    let mut open = 0_usize;
-    let mut polygon = Vec::new();
-    for face in polyhedron.faces() {
-        let range = places(face.first_vertex_or_edge, face.num_vertices_or_edges);
-        let corners = polyhedron.vertices_adj_to_face().get(range.clone())?;
-        let edges = polyhedron.edges_adj_to_face().get(range)?;
-        let (lowest, _) = corners.iter().enumerate().min_by_key(|(_, v)| **v)?;
-        polygon.clear();
-        polygon.extend(corners[lowest..].iter().chain(&corners[..lowest]));
-        let normal = side_normal(points, &polygon, radius)?;
-        let edges = edges[lowest..].iter().chain(&edges[..lowest]);
-        for (i, &edge) in edges.enumerate() {
-            let here = SideBorder::new(points, &polygon, i, normal)?;
-            let border = borders.get_mut(edge as usize)?;
-            match border.take() {
-                Some(there) if here.bends(&there, radius) => open -= 1,
-                Some(_) => return None,
-                None => {
-                    *border = Some(here);
-                    open += 1;
+/// The faces of a polyhedron.
+pub(super) struct FlatFaces {
+    /// The triangles of all faces, with diagonals that depend only on the points.
+    pub triangles: Vec<[u32; 3]>,
+    /// The faces with more than three corners, each from its lowest corner.
+    pub polygons: Rows<u32>,
+}
+
+impl FlatFaces {
+    /// `None` if the faces are not the flat sides of the polyhedron.
+    pub fn of(polyhedron: &ConvexPolyhedron, points: &[DVec3], radius: f64) -> Option<Self> {
+        let mut flat = Self {
+            triangles: Vec::with_capacity((2 * points.len()).checked_sub(4)?),
+            polygons: Rows::default(),
+        };
+        // The border of the first of the two sides along each edge.
+        let mut borders: Vec<Option<SideBorder>> = vec![None; polyhedron.edges().len()];
+        let mut open = 0_usize;
+        let mut polygon = Vec::new();
+        for face in polyhedron.faces() {
+            let range = places(face.first_vertex_or_edge, face.num_vertices_or_edges);
+            let corners = polyhedron.vertices_adj_to_face().get(range.clone())?;
+            let edges = polyhedron.edges_adj_to_face().get(range)?;
+            let (lowest, _) = corners.iter().enumerate().min_by_key(|(_, v)| **v)?;
+            polygon.clear();
+            polygon.extend(corners[lowest..].iter().chain(&corners[..lowest]));
+            let normal = side_normal(points, &polygon, radius)?;
+            let edges = edges[lowest..].iter().chain(&edges[..lowest]);
+            for (i, &edge) in edges.enumerate() {
+                let here = SideBorder::new(points, &polygon, i, normal)?;
+                let border = borders.get_mut(usize::try_from(edge).ok()?)?;
+                match border.take() {
+                    Some(there) if here.bends(&there, radius) => open -= 1,
+                    Some(_) => return None,
+                    None => {
+                        *border = Some(here);
+                        open += 1;
+                    }
                 }
             }
+            flat.triangles.extend(zigzag(&polygon));
+            if polygon.len() > 3 {
+                flat.polygons.push(polygon.iter().copied());
+            }
         }
-        triangles.extend(zigzag(&polygon));
+        (open == 0).then_some(flat)
     }
-    if open > 0 {
-        return None;
+
+    /// The triangles in the order of their corners.
+    pub fn sorted(&self, corners: usize) -> Option<Vec<[u32; 3]>> {
+        sorted(&self.triangles, corners)
     }
-    sorted(&triangles, points.len())
 }
 
 /// The places of a face's corners, and of its edges, in parry's lists.
@@ -70,7 +83,7 @@ pub(super) fn has_flat_sides(polyhedron: &ConvexPolyhedron) -> bool {
 
 /// The triangles of a polyhedron.
 pub(super) struct FaceTriangles {
-    /// Each from its lowest corner, in the order of their corners.
+    /// In the order of the faces.
     pub triangles: Vec<[u32; 3]>,
     /// Whether there seem to be flat sides.
     pub seem_flat: bool,
@@ -88,14 +101,14 @@ impl FaceTriangles {
             let range = places(face.first_vertex_or_edge, face.num_vertices_or_edges);
             let corners = polyhedron.vertices_adj_to_face().get(range)?;
             match *corners {
-                [a, b, c] => triangles.push(from_lowest([a, b, c])),
+                [a, b, c] => triangles.push([a, b, c]),
                 [a, b, c, d] if let Some(upward) = bends_upward(points, corners) => {
                     let halves = if upward {
                         [[b, c, d], [d, a, b]]
                     } else {
                         [[a, b, c], [c, d, a]]
                     };
-                    triangles.extend(halves.map(from_lowest));
+                    triangles.extend(halves);
                 }
                 _ => {
                     within.find(polyhedron);
@@ -104,12 +117,17 @@ impl FaceTriangles {
                 }
             }
         }
-        if triangles.len() != count {
-            return None;
-        }
-        Some(Self {
-            triangles: sorted(&triangles, points.len())?,
+        (triangles.len() == count).then_some(Self {
+            triangles,
             seem_flat,
+        })
+    }
+
+    /// Each from its lowest corner, in the order of their corners. `None` if there is no such corner.
+    pub fn sorted(self, corners: usize) -> Option<Self> {
+        Some(Self {
+            triangles: sorted(&self.triangles, corners)?,
+            ..self
         })
     }
 }
@@ -118,7 +136,10 @@ impl FaceTriangles {
 fn sorted(triangles: &[[u32; 3]], corners: usize) -> Option<Vec<[u32; 3]>> {
     let mut rows = Rows::by_key(
         corners,
-        triangles.iter().map(|&triangle| (triangle[0], triangle)),
+        triangles
+            .iter()
+            .map(|&t| from_lowest(t))
+            .map(|triangle| (triangle[0], triangle)),
     )?;
     rows.each_mut(|row| match row {
         // Most vertices are the lowest of two triangles.
@@ -189,7 +210,7 @@ impl EdgesWithin {
             while let [.., a, b, c] = chain[..]
                 && *self.ends.get(b as usize)? == 0
             {
-                triangles.push(from_lowest([a, b, c]));
+                triangles.push([a, b, c]);
                 chain.truncate(chain.len() - 2);
                 chain.push(c);
                 if left > 0 {
@@ -234,7 +255,9 @@ mod tests {
         let mut told = 0;
         for points in &clouds {
             let polyhedron = ConvexPolyhedron::from_convex_hull(points).expect("a hull");
-            let Some(faces) = FaceTriangles::of(&polyhedron) else {
+            let faces = FaceTriangles::of(&polyhedron);
+            let Some(faces) = faces.and_then(|faces| faces.sorted(polyhedron.points().len()))
+            else {
                 continue;
             };
             told += 1;

@@ -1,5 +1,7 @@
 //! The supporting plane of a face.
 
+use std::mem;
+
 use glam::{DVec3, Vec3};
 
 use super::area_vectors::AreaVector;
@@ -39,10 +41,11 @@ impl FacePlane {
     /// No plane if a corner is too far from it.
     #[inline]
     fn or_none(self, lowest: f64, radius: f64) -> Self {
-        if self.offset - lowest > 2.0 * FACE_FLATNESS * radius {
-            return Self::NONE;
+        if is_flat(self.offset - lowest, radius) {
+            self
+        } else {
+            Self::NONE
         }
-        self
     }
 
     /// The plane goes through the outermost of the polygon's corners and their neighbours: on a convex hull
@@ -54,7 +57,7 @@ impl FacePlane {
         bends: &Bends,
         radius: f64,
     ) -> Self {
-        let normal = polygon_normal(points, mesh, polygon).as_vec3();
+        let normal = normal_of(points, mesh, polygon).as_vec3();
         let direction = normal.as_dvec3();
         let height = |v: u32| direction.dot(points.at(v));
         // No value is NaN here, so the NaN check of `f64::max` is not needed.
@@ -85,16 +88,23 @@ impl FacePlane {
     }
 }
 
+/// Whether a face of this thickness has a plane.
+#[inline]
+pub(super) fn is_flat(thickness: f64, radius: f64) -> bool {
+    thickness <= 2.0 * FACE_FLATNESS * radius
+}
+
+/// The normal of a polygon of a mesh.
+pub(super) fn normal_of(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, polygon: &[HalfEdge]) -> DVec3 {
+    polygon_normal(polygon.iter().map(|&side| points.at(mesh.start(side))))
+}
+
 /// The area vector of a polygon, normalised (Newell's method, about its first vertex).
-pub(super) fn polygon_normal(
-    points: &[DVec3],
-    mesh: &HalfEdgeMesh<'_>,
-    polygon: &[HalfEdge],
-) -> DVec3 {
-    let at = |i: usize| points.at(mesh.start(polygon[i]));
-    let origin = at(0);
-    let sum: DVec3 = (1..polygon.len() - 1)
-        .map(|i| (at(i) - origin).cross(at(i + 1) - origin))
-        .sum();
+pub(super) fn polygon_normal(mut corners: impl Iterator<Item = DVec3>) -> DVec3 {
+    let origin = corners.next().unwrap_or_default();
+    let mut from_origin = corners.map(|corner| corner - origin);
+    let mut before = from_origin.next().unwrap_or_default();
+    let crosses = from_origin.map(|corner| mem::replace(&mut before, corner).cross(corner));
+    let sum = crosses.reduce(|a, b| a + b).unwrap_or_default();
     sum.normalize_or(DVec3::Z)
 }

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::area_vectors::AreaVectors;
 use super::bends::Bends;
-use super::face_plane::{FacePlane, polygon_normal};
+use super::face_plane::{FacePlane, normal_of};
 use super::flat_edges::NearlyFlatEdges;
 use super::half_edge::{HalfEdge, HalfEdgeMesh, triangle};
 use super::regions::CoplanarRegions;
@@ -191,7 +191,7 @@ impl Builder<'_> {
 
     fn finish(mut self) -> (Faces, MergedFaces) {
         let count = self.polygons.len();
-        self.add_plane(&FacePlane::NONE);
+        self.polygons.push(FaceRecord::end(&self.corners));
         let faces = Faces {
             polygons: self.polygons.into(),
             count,
@@ -204,7 +204,7 @@ impl Builder<'_> {
 
 /// Whether no corner is a dent, beyond rounding.
 fn is_convex(points: &[DVec3], mesh: &HalfEdgeMesh<'_>, polygon: &[HalfEdge], radius: f64) -> bool {
-    let normal = polygon_normal(points, mesh, polygon);
+    let normal = normal_of(points, mesh, polygon);
     let count = polygon.len();
     let at = |i: usize| points.at(mesh.start(polygon[i % count]));
     (0..count).all(|i| {

@@ -201,7 +201,7 @@ pub(super) fn zigzag(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     std::iter::from_fn(move || {
         is_low = !is_low;
         let middle = if is_low { low + 1 } else { high - 1 };
-        let triangle = [low, middle, high].map(|i| polygon[i]);
+        let triangle = [polygon[low], polygon[middle], polygon[high]];
         if high - low < 2 {
             return None;
         }

@@ -4,17 +4,65 @@ use super::half_edge::{DirectedEdge, HalfEdgeMesh};
 use crate::hull::graph::{BLOCK, EdgeGraph, LAST, MARK, NeighborBlock, OVERFLOW, PLATEAU_SEARCH};
 use crate::support::VertexId;
 
-impl NeighborBlock {
-    /// From sides that leave a vertex. The `first` fills up unused slots.
+/// A neighbour of a vertex, and the face left of the edge to it.
+#[derive(Clone, Copy)]
+pub(super) struct Neighbor {
+    pub to: u16,
+    pub left: u16,
+}
+
+/// Adds the neighbours of one vertex after the other.
+pub(super) struct GraphBuilder {
+    blocks: Vec<NeighborBlock>,
+    overflow: Vec<NeighborBlock>,
+}
+
+impl GraphBuilder {
+    pub fn new(count: usize) -> Self {
+        Self {
+            blocks: Vec::with_capacity(count),
+            overflow: Vec::new(),
+        }
+    }
+
+    /// Adds the neighbours of the next vertex, clockwise seen from outside.
     #[inline]
-    fn new(sides: &[DirectedEdge], first: &DirectedEdge, face_of: &[u16]) -> Self {
-        let left = |side: &DirectedEdge| face_of[usize::from(side.triangle)];
+    pub fn push(&mut self, around: &[Neighbor]) {
+        let block = |neighbors| NeighborBlock::new(neighbors, around[0]);
+        if around.len() <= BLOCK {
+            self.blocks.push(block(around));
+            return;
+        }
+        // From the last block to the first, since each stores the index of the next.
+        let last = (around.len() - 2) / LAST;
+        let mut after = block(&around[last * LAST..]);
+        for number in (0..last).rev() {
+            self.overflow.push(after);
+            let neighbors = &around[number * LAST..][..BLOCK];
+            after = block(neighbors).with_overflow(self.overflow.len() - 1);
+        }
+        self.blocks.push(after);
+    }
+
+    pub fn finish(self) -> EdgeGraph {
+        EdgeGraph {
+            blocks: self.blocks.into(),
+            overflow: self.overflow.into(),
+        }
+    }
+}
+
+impl NeighborBlock {
+    /// The `first` neighbour fills up unused slots.
+    #[inline]
+    fn new(neighbors: &[Neighbor], first: Neighbor) -> Self {
         let mut block = Self {
             to: [first.to; BLOCK],
-            left: [left(first); BLOCK],
+            left: [first.left; BLOCK],
         };
-        for (i, side) in sides.iter().take(BLOCK).enumerate() {
-            (block.to[i], block.left[i]) = (side.to, left(side));
+        let slots = block.to.iter_mut().zip(&mut block.left);
+        for ((to, left), neighbor) in slots.zip(neighbors) {
+            (*to, *left) = (neighbor.to, neighbor.left);
         }
         block
     }
@@ -30,27 +78,18 @@ impl NeighborBlock {
 impl EdgeGraph {
     /// From a surface, and the face of each triangle.
     pub fn new(mesh: &HalfEdgeMesh<'_>, face_of: &[u16]) -> Self {
-        let mut overflow = Vec::new();
-        let blocks = (0..mesh.vertex_count()).map(|v| {
-            let around = mesh.outgoing(v as u32);
-            let block = |sides| NeighborBlock::new(sides, &around[0], face_of);
-            if around.len() <= BLOCK {
-                return block(around);
-            }
-            // From the last block to the first, since each stores the index of the next.
-            let last = (around.len() - 2) / LAST;
-            (1..=last)
-                .rev()
-                .fold(block(&around[last * LAST..]), |after, number| {
-                    overflow.push(after);
-                    let sides = &around[(number - 1) * LAST..][..BLOCK];
-                    block(sides).with_overflow(overflow.len() - 1)
-                })
-        });
-        Self {
-            blocks: blocks.collect(),
-            overflow: overflow.into(),
+        let neighbor = |side: &DirectedEdge| Neighbor {
+            to: side.to,
+            left: face_of[usize::from(side.triangle)],
+        };
+        let mut builder = GraphBuilder::new(mesh.vertex_count());
+        let mut around = Vec::new();
+        for v in 0..mesh.vertex_count() {
+            around.clear();
+            around.extend(mesh.outgoing(v as u32).iter().map(neighbor));
+            builder.push(&around);
         }
+        builder.finish()
     }
 
     /// Marks the vertices at which ties need a plateau search.

@@ -109,20 +109,14 @@ impl<'a> HalfEdgeMesh<'a> {
         let (slots, _) = self.slots.as_chunks();
         let triangles = self.triangles.iter().zip(slots);
         triangles.map(|(&[a, b, c], &[at_a, at_b, at_c])| {
-            [(a, at_a), (b, at_b), (c, at_c)].map(|(vertex, slot)| FaceCorner {
-                vertex: vertex as u16,
-                slot,
-            })
+            [(a, at_a), (b, at_b), (c, at_c)].map(|(vertex, slot)| FaceCorner::new(vertex, slot))
         })
     }
 
     /// The corner of a polygon from which a side starts.
     #[inline]
     pub fn corner(&self, side: HalfEdge) -> FaceCorner {
-        FaceCorner {
-            vertex: self.start(side) as u16,
-            slot: self.slots.at(side),
-        }
+        FaceCorner::new(self.start(side), self.slots.at(side))
     }
 
     /// Sorts the sides around each vertex, and so finds their twins. `false` if the triangles around a vertex

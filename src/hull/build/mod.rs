@@ -1,5 +1,6 @@
 //! Building hulls: from points, from triangles, and from parry's polyhedra.
 
+mod adjacency;
 mod area_vectors;
 mod bends;
 mod face_loops;
@@ -16,5 +17,6 @@ pub(crate) mod polyhedron;
 mod quickhull;
 mod regions;
 pub(super) mod solid;
+mod steep;
 mod surface;
 mod validate;

@@ -10,9 +10,10 @@ use std::cmp::Ordering;
 use glam::{DVec2, DVec3, Vec3};
 use parry3d::shape::ConvexPolyhedron;
 
-use super::face_loops::{FaceTriangles, has_flat_sides, triangles_of_flat_sides};
+use super::face_loops::{FaceTriangles, FlatFaces, has_flat_sides};
 use super::flat_sides;
 use super::identity::Diagonals;
+use super::steep::steep_hull;
 use super::validate::MAX_VERTICES;
 use crate::at::At;
 use crate::hull::lists::Rows;
@@ -57,6 +58,13 @@ pub(crate) fn hull_of_surface(polyhedron: &ConvexPolyhedron) -> Option<(Hull, Di
     }
     let faces = FaceTriangles::of(polyhedron);
     if let Some(faces) = &faces
+        && !faces.seem_flat
+        && let Some(hull) = steep_hull(points, &faces.triangles, &Rows::default())
+    {
+        return Some((hull, Diagonals::default()));
+    }
+    let faces = faces.and_then(|faces| faces.sorted(points.len()));
+    if let Some(faces) = &faces
         && let Some(hull) = of_faces(points, faces)
     {
         return Some((hull, Diagonals::default()));
@@ -82,8 +90,11 @@ fn of_flat_sides(polyhedron: &ConvexPolyhedron) -> Option<Hull> {
         return None;
     }
     let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
-    let triangles = triangles_of_flat_sides(polyhedron, &exact, around_middle(points).1)?;
-    Hull::from_reordered_triangles(points.to_vec(), &triangles).ok()
+    let faces = FlatFaces::of(polyhedron, &exact, around_middle(points).1)?;
+    steep_hull(points, &faces.triangles, &faces.polygons).or_else(|| {
+        let triangles = faces.sorted(points.len())?;
+        Hull::from_reordered_triangles(points.to_vec(), &triangles).ok()
+    })
 }
 
 /// The hull, if it depends only on the points: each edge bends, or is a diagonal of a flat side.
@@ -115,7 +126,8 @@ fn around_middle(points: &[Vec3]) -> (DVec3, f64) {
 
 /// The triangles of a polyhedron, counter-clockwise from outside; `None` if they are ambiguous.
 pub(crate) fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
-    match FaceTriangles::of(polyhedron) {
+    let faces = FaceTriangles::of(polyhedron);
+    match faces.and_then(|faces| faces.sorted(polyhedron.points().len())) {
         Some(faces) => Some(faces.triangles),
         None => triangles_of_edges(polyhedron),
     }

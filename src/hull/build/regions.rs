@@ -152,7 +152,8 @@ impl CoplanarRegions {
         &self.triangles[self.first[region]..self.first[region + 1]]
     }
 
-    /// Writes the sides around a region to `polygon`. `false` if they are not a single loop.
+    /// Writes the sides around a region to `polygon`, from the lowest vertex on. `false` if they are not a single
+    /// loop.
     pub fn boundary(
         &self,
         mesh: &HalfEdgeMesh<'_>,
@@ -177,9 +178,13 @@ impl CoplanarRegions {
                 side = next(mesh.twin(side));
             }
             if side == start {
-                return polygon.len() == 1 + outer.count();
+                break;
             }
         }
+        let places = 0..polygon.len();
+        let lowest = places.min_by_key(|&place| mesh.start(polygon[place]));
+        polygon.rotate_left(lowest.unwrap_or(0));
+        polygon.len() == 1 + outer.count()
     }
 }
 

@@ -42,7 +42,7 @@ struct Measures {
 impl Measures {
     fn new(points: &[DVec3], mesh: &HalfEdgeMesh<'_>) -> Result<Self, HullError> {
         let areas = AreaVectors::new(points, mesh.triangles);
-        let (center, radius) = center_and_radius(points, &areas)?;
+        let (center, radius) = center_and_radius(points, &areas.inside)?;
         let bends = Bends::new(points, mesh, &areas, radius)?;
         let wraps_once = validate_single_layer(points, mesh.triangles, &areas, center, radius)?;
         Ok(Self {

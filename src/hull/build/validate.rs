@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::area_vectors::{AreaVectors, longest_side};
+use super::area_vectors::{AreaVectors, Volume, longest_side};
 use crate::at::At;
 use crate::hull::HullError;
 use crate::hull::climb::{self, HillClimb};
@@ -62,9 +62,9 @@ fn hash(point: Vec3) -> usize {
 /// The centre of volume, and the largest distance of a vertex from it.
 pub(super) fn center_and_radius(
     points: &[DVec3],
-    surface: &AreaVectors,
+    inside: &Volume,
 ) -> Result<(DVec3, f64), HullError> {
-    let origin = points[0];
+    let origin = inside.origin;
     let farthest = |from: DVec3| {
         let distances = points.iter().map(|p| (*p - from).length_squared());
         // No value is NaN here, so the NaN check of `f64::max` is not needed.
@@ -73,15 +73,15 @@ pub(super) fn center_and_radius(
             .sqrt()
     };
     // For a flat surface, rounding decides the sign.
-    if surface.volume <= 0.0 {
-        let is_flat = surface.volume >= -MIN_EXTENT * farthest(origin).powi(3);
+    if inside.volume <= 0.0 {
+        let is_flat = inside.volume >= -MIN_EXTENT * farthest(origin).powi(3);
         return Err(if is_flat {
             HullError::Flat
         } else {
             HullError::InsideOut
         });
     }
-    let center = origin + surface.moment / (4.0 * surface.volume);
+    let center = origin + inside.moment / (4.0 * inside.volume);
     Ok((center, farthest(center)))
 }
 
@@ -117,10 +117,8 @@ pub(super) fn validate_single_layer(
     center: DVec3,
     radius: f64,
 ) -> Result<bool, HullError> {
-    let (x, y) = TEST_RAY.normalize().any_orthonormal_pair();
-    let seen_from_ray = |p: &DVec3| quadrant((*p - center).dot(x), (*p - center).dot(y));
-    let quadrants: Vec<u8> = points.iter().map(seen_from_ray).collect();
-    let (mut crossings, mut some_inward) = (0, false);
+    let not_convex = |[vertex, ..]: &[u32; 3]| HullError::NotConvex(*vertex as usize);
+    let mut some_inward = false;
     for (triangle, vector) in triangles.iter().zip(&surface.triangles) {
         let outward = vector.vector.dot(points.at(triangle[0]) - center);
         if outward <= 0.0 {
@@ -128,19 +126,32 @@ pub(super) fn validate_single_layer(
             let height = MAX_INWARD_HEIGHT * radius;
             let is_sliver = || vector.area <= height * longest_side(points, *triangle);
             if outward < 0.0 && !is_sliver() {
-                return Err(HullError::NotConvex(triangle[0] as usize));
-            }
-        }
-        let [a, b, c] = triangle.map(|v| quadrants.at(v));
-        // A triangle on one side of a plane through the ray does not meet it.
-        if a & b & c == 0 && meets_ray(triangle.map(|v| points.at(v) - center)) {
-            crossings += 1;
-            if crossings > 1 {
-                return Err(HullError::NotConvex(triangle[0] as usize));
+                return Err(not_convex(triangle));
             }
         }
     }
-    Ok(crossings == 1 && !some_inward)
+    let mut met = met_by_ray(points, triangles, center);
+    let meets_one = met.next().is_some();
+    match met.next() {
+        Some(second) => Err(not_convex(second)),
+        None => Ok(meets_one && !some_inward),
+    }
+}
+
+/// The triangles that a ray from the centre meets.
+pub(super) fn met_by_ray<'a>(
+    points: &'a [DVec3],
+    triangles: &'a [[u32; 3]],
+    center: DVec3,
+) -> impl Iterator<Item = &'a [u32; 3]> {
+    let (x, y) = TEST_RAY.normalize().any_orthonormal_pair();
+    let seen_from_ray = |p: &DVec3| quadrant((*p - center).dot(x), (*p - center).dot(y));
+    let quadrants: Vec<u8> = points.iter().map(seen_from_ray).collect();
+    triangles.iter().filter(move |&&[a, b, c]| {
+        // A triangle on one side of a plane through the ray does not meet it.
+        let beside = quadrants.at(a) & quadrants.at(b) & quadrants.at(c);
+        beside == 0 && meets_ray([a, b, c].map(|v| points.at(v) - center))
+    })
 }
 
 /// On which sides of two planes through the test ray a point lies, with some distance.

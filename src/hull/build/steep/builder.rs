@@ -1,0 +1,174 @@
+//! The checks of a surface, and its planes.
+
+use std::mem;
+use std::sync::OnceLock;
+
+use glam::{DVec3, Vec3};
+
+use crate::hull::build::adjacency::{AdjacencyMatrix, TRIANGLES, VERTICES, row};
+use crate::hull::build::area_vectors::{AreaVector, Volume};
+use crate::hull::build::face_plane::{is_flat, polygon_normal};
+use crate::hull::build::graph::Neighbor;
+use crate::hull::build::validate::{center_and_radius, met_by_ray, validate_finite};
+use crate::hull::faces::{FaceRecord, Faces};
+use crate::hull::lists::Rows;
+use crate::hull::scan::Scan;
+use crate::hull::{Hull, SupportSearch};
+use crate::ids::ShapeId;
+use crate::tolerance::MIN_EXTENT;
+
+/// Memory to work in. Its lists are longer than any index, so that indices need no checks.
+pub(super) struct SteepBuilder {
+    pub matrix: AdjacencyMatrix,
+    pub points: Box<[DVec3; VERTICES]>,
+    pub areas: Box<[Area; TRIANGLES]>,
+    /// Of the triangles, and then of the faces.
+    pub planes: Vec<FaceRecord>,
+    pub has_polygons: bool,
+    pub around: Vec<Neighbor>,
+}
+
+/// Twice the area of a triangle, as a vector and its length.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Area {
+    pub vector: DVec3,
+    pub length: f64,
+}
+
+impl Default for SteepBuilder {
+    fn default() -> Self {
+        Self {
+            matrix: AdjacencyMatrix::default(),
+            points: Box::new([DVec3::ZERO; _]),
+            areas: Box::new([Area::default(); _]),
+            planes: Vec::with_capacity(TRIANGLES),
+            has_polygons: false,
+            around: Vec::with_capacity(VERTICES),
+        }
+    }
+}
+
+impl SteepBuilder {
+    pub fn hull(
+        &mut self,
+        points: &[Vec3],
+        triangles: &[[u32; 3]],
+        polygons: &Rows<u32>,
+    ) -> Option<Hull> {
+        self.matrix.read(points.len(), triangles)?;
+        validate_finite(points).ok()?;
+        for (exact, point) in self.points.iter_mut().zip(points) {
+            *exact = point.as_dvec3();
+        }
+        let (inside, mut thickness) = self.measure();
+        self.has_polygons = polygons.len() > 0;
+        if self.has_polygons {
+            thickness = thickness.max(self.merge(polygons)?);
+        }
+        let exact = &self.points[..points.len()];
+        let (center, radius) = center_and_radius(exact, &inside).ok()?;
+        if !is_flat(thickness, radius) || !self.is_around(exact, center, radius) {
+            return None;
+        }
+        let graph = self.walk_around_all(points.len(), radius)?;
+        let count = self.planes.len();
+        self.planes.push(FaceRecord::end(self.matrix.corners()));
+        Some(Hull {
+            search: SupportSearch::Scan(Scan::new(points, center, radius)?),
+            points: points.into(),
+            graph,
+            faces: Faces {
+                count,
+                polygons: self.planes.as_slice().into(),
+                corners: self.matrix.corners().into(),
+                clusters: OnceLock::new(),
+            },
+            center,
+            radius,
+            id: ShapeId::new(),
+        })
+    }
+
+    /// Lists the planes of the triangles, and measures the volume inside and how far corners are from the plane of
+    /// their triangle.
+    fn measure(&mut self) -> (Volume, f64) {
+        self.planes.clear();
+        let mut inside = Volume::new(self.points[0]);
+        let (mut first, mut thickness) = (0, 0.0);
+        for (area, &[a, b, c]) in self.areas.iter_mut().zip(&self.matrix.triangles) {
+            let a = self.points[row(a)];
+            let sides = [self.points[row(b)] - a, self.points[row(c)] - a];
+            let triangle = AreaVector::new(a, sides);
+            inside.add(a, sides, triangle.vector);
+            let height = triangle.highest - triangle.lowest;
+            thickness = if height > thickness {
+                height
+            } else {
+                thickness
+            };
+            *area = Area {
+                vector: triangle.vector,
+                length: triangle.area,
+            };
+            self.planes.push(FaceRecord {
+                normal: triangle.normal,
+                first,
+                offset: triangle.highest,
+            });
+            first += 3;
+        }
+        (inside, thickness)
+    }
+
+    /// Replaces the planes of triangles by those of faces, and returns how far corners are from the plane of their
+    /// polygon. `None` if a triangle is turned away from its polygon.
+    fn merge(&mut self, polygons: &Rows<u32>) -> Option<f64> {
+        let of_triangles = mem::take(&mut self.planes);
+        let (points, planes) = (&*self.points, &mut self.planes);
+        let (mut first, mut thickness) = (0, 0.0_f64);
+        self.matrix.merge(polygons, |triangle, polygon| {
+            let Some(polygon) = polygon else {
+                planes.push(FaceRecord {
+                    first,
+                    ..of_triangles[triangle]
+                });
+                first += 3;
+                return;
+            };
+            let corners = polygons.row(polygon).iter().map(|&v| points[row(v)]);
+            let normal = polygon_normal(corners.clone()).as_vec3();
+            let mut plane = FaceRecord {
+                normal,
+                first,
+                offset: f64::NEG_INFINITY,
+            };
+            let mut lowest = f64::INFINITY;
+            for corner in corners {
+                let height = normal.as_dvec3().dot(corner);
+                plane.offset = plane.offset.max(height);
+                lowest = lowest.min(height);
+                first += 1;
+            }
+            thickness = thickness.max(plane.offset - lowest);
+            planes.push(plane);
+        });
+        let faces_outward = |triangle: usize| {
+            let face = usize::from(self.matrix.face_of(triangle));
+            let normal = self.planes[face].normal.as_dvec3();
+            self.areas[triangle].vector.dot(normal) > 0.0
+        };
+        (0..self.matrix.triangles.len())
+            .all(faces_outward)
+            .then_some(thickness)
+    }
+
+    /// Whether the centre is clearly beneath all faces, and a ray from it meets only one triangle. Then the surface
+    /// goes around the centre once.
+    fn is_around(&self, points: &[DVec3], center: DVec3, radius: f64) -> bool {
+        let least = MIN_EXTENT * radius;
+        let is_beneath =
+            |plane: &FaceRecord| plane.offset - plane.normal.as_dvec3().dot(center) > least;
+        self.planes.iter().all(is_beneath)
+            && met_by_ray(points, &self.matrix.triangles, center).count() == 1
+    }
+}
