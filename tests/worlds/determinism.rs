@@ -28,7 +28,7 @@ fn run(mut world: PhysicsWorld) -> Vec<u32> {
 /// FNV-1a over numbers.
 fn hash(numbers: impl IntoIterator<Item = u32>) -> u64 {
     let bytes = numbers.into_iter().flat_map(u32::to_le_bytes);
-    bytes.fold(0x6008_f3f4_d8bb_1f84, |hash, byte| {
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
     })
 }
@@ -87,7 +87,7 @@ fn the_number_of_threads_does_not_show() {
 
 /// The contacts along the published trajectories. Whoever changes answers on purpose replaces it
 /// by what the failing test says.
-const CONTACTS: u64 = 0x45bc_ff8a_db72_34e1;
+const CONTACTS: u64 = 0x6008_f3f4_d8bb_1f84;
 
 /// The SIMD width is none of our business: all builds find the same contacts.
 #[test]
