@@ -10,6 +10,9 @@ use testkit::generate::Rng;
 const TOLERANCE: f64 = 1.0e-5;
 const GAPS: [f64; 7] = [0.05, 0.005, 1.0e-6, -1.0e-6, -0.01, -0.05, -0.2];
 
+/// Number of [`bodies`].
+const KINDS: usize = 13;
+
 /// One of each kind of body.
 fn bodies(rng: &mut Rng) -> Vec<Body> {
     let mut size = || 10_f64.powf(rng.range(-1.2, 0.2)) as Real;
@@ -124,31 +127,31 @@ impl Check<'_> {
 fn every_convex_pair_is_answered_exactly() {
     let mut rng = Rng::new(17);
     let mut checked = 0;
-    for _ in 0..2 {
+    for kind in 0..KINDS {
+        // Bodies of other sizes for each kind.
         let all = bodies(&mut rng);
-        for a in &all {
-            for b in &all {
-                if is_half_space(a) && is_half_space(b) {
-                    continue;
-                }
-                for meeting in Meeting::ALL {
-                    for gap in GAPS {
-                        let size = a.diameter().min(b.diameter());
-                        let Some(pose) = meeting.pose(&mut rng, [a, b], gap * size) else {
-                            continue;
-                        };
-                        let check = Check {
-                            bodies: [a, b],
-                            judge: Judge::new([a, b], pose),
-                            pose: pose.to_f32(),
-                            what: format!("{} and {}, {meeting:?}, {gap}", a.name, b.name),
-                        };
-                        check.all();
-                        checked += 1;
-                    }
+        let a = &all[kind];
+        for b in &all {
+            if is_half_space(a) && is_half_space(b) {
+                continue;
+            }
+            for meeting in Meeting::ALL {
+                for gap in GAPS {
+                    let size = a.diameter().min(b.diameter());
+                    let Some(pose) = meeting.pose(&mut rng, [a, b], gap * size) else {
+                        continue;
+                    };
+                    let check = Check {
+                        bodies: [a, b],
+                        judge: Judge::new([a, b], pose),
+                        pose: pose.to_f32(),
+                        what: format!("{} and {}, {meeting:?}, {gap}", a.name, b.name),
+                    };
+                    check.all();
+                    checked += 1;
                 }
             }
         }
     }
-    assert!(checked > 8000, "only {checked}");
+    assert!(checked > 4000, "only {checked}");
 }

@@ -54,7 +54,7 @@ fn all(recorder: Recorder) -> Recorder {
 fn meet(dispatcher: &IsaGjkDispatcher, is_meant: impl Fn(&ShapeSample) -> bool) {
     let mut samples = shape_samples();
     let mut rng = Rng::new(5);
-    samples.extend((0..30).map(|_| ShapeSample {
+    samples.extend((0..10).map(|_| ShapeSample {
         name: "any hull",
         has_hull: true,
         shape: rng.any_hull(1.0).shape,
