@@ -10,11 +10,20 @@ pub(crate) trait At<T> {
     where
         T: Copy;
 
+    /// A reference to the element at an index.
+    ///
+    /// # Panics
+    /// If there is none.
+    fn at_ref(&self, index: u32) -> &T;
+
     /// The place of the element at an index.
     ///
     /// # Panics
     /// If there is none.
     fn at_mut(&mut self, index: u32) -> &mut T;
+
+    /// The number of elements, which short indices reach.
+    fn short_len(&self) -> u32;
 }
 
 impl<T> At<T> for [T] {
@@ -23,11 +32,22 @@ impl<T> At<T> for [T] {
     where
         T: Copy,
     {
-        self[index as usize]
+        *self.at_ref(index)
+    }
+
+    #[inline]
+    fn at_ref(&self, index: u32) -> &T {
+        &self[index as usize]
     }
 
     #[inline]
     fn at_mut(&mut self, index: u32) -> &mut T {
         &mut self[index as usize]
+    }
+
+    #[inline]
+    fn short_len(&self) -> u32 {
+        debug_assert!(u32::try_from(self.len()).is_ok());
+        self.len() as u32
     }
 }

@@ -33,11 +33,7 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
         let (cso, tolerance) = (self.cso, self.tolerance());
         let flat = flat_side(cso.shape_2, outward, self.cost)?;
         let inverse = cso.pose.inverse();
-        let reversed = Cso {
-            shape_1: cso.shape_2,
-            shape_2: cso.shape_1,
-            pose: &inverse,
-        };
+        let reversed = cso.reversed(&inverse);
         let normal = -cso.pose.direction_to_1(flat.normal);
         let side = OnFlatSide::new(&reversed, flat, self.cost);
         let middle = || last.middle_of_deepest(normal, FLUSH_TIE * tolerance);

@@ -6,6 +6,7 @@ use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
+use crate::at::At;
 use crate::support::CsoVertex;
 use crate::tolerance::COPLANAR;
 
@@ -116,12 +117,12 @@ impl ExpandingPolytope {
         self.sides.clear();
         self.sides.resize(count * count, NONE);
         for (triangle, face) in triangles.iter().zip(0..) {
-            for k in 0..3 {
+            for (k, number) in (0..3).zip(0..) {
                 let side = &mut self.sides[place(triangle[k], triangle[NEXT[k]])];
                 if *side != NONE {
                     return false;
                 }
-                *side = face_edge(face, k as u32);
+                *side = face_edge(face, number);
             }
         }
         triangles.iter().all(|triangle| {
@@ -148,7 +149,7 @@ impl ExpandingPolytope {
     /// The face whose plane is nearest to the origin, among those still on the surface.
     pub fn nearest_face(&mut self) -> Option<u32> {
         while let Some(top) = self.heap.peek() {
-            if self.faces[top.face as usize].alive {
+            if self.faces.at_ref(top.face).alive {
                 return Some(top.face);
             }
             self.heap.pop();
@@ -158,7 +159,7 @@ impl ExpandingPolytope {
 
     /// The outward unit normal of a face, and the signed distance of the origin beneath its plane.
     pub fn plane(&self, face: u32) -> (DVec3, f64) {
-        let face = &self.faces[face as usize];
+        let face = self.faces.at_ref(face);
         (face.normal, face.distance)
     }
 
@@ -171,11 +172,11 @@ impl ExpandingPolytope {
     }
 
     pub fn vertex(&self, vertex: u32) -> &CsoVertex {
-        &self.vertices[vertex as usize]
+        self.vertices.at_ref(vertex)
     }
 
     pub fn corners(&self, face: u32) -> [CsoVertex; 3] {
-        self.faces[face as usize].corners.map(|v| *self.vertex(v))
+        self.faces.at_ref(face).corners.map(|v| *self.vertex(v))
     }
 
     /// Whether the polytope already has this vertex.
@@ -197,9 +198,11 @@ impl ExpandingPolytope {
 
     /// Expands the polytope to a given point of the difference, if that is outside.
     pub fn insert_if_outside(&mut self, vertex: &CsoVertex) {
-        let is_outside = |face: &Face| face.alive && face.height(vertex.w) > self.coplanar;
-        if let Some(face) = self.faces.iter().position(is_outside) {
-            self.expand(face as u32, *vertex);
+        let is_outside =
+            |(face, _): &(&Face, u32)| face.alive && face.height(vertex.w) > self.coplanar;
+        let found = self.faces.iter().zip(0..).find(is_outside);
+        if let Some((_, face)) = found {
+            self.expand(face, *vertex);
         }
     }
 
@@ -209,14 +212,14 @@ impl ExpandingPolytope {
         self.find_horizon(face, vertex.w);
         if !self.horizon_is_closed() {
             for f in self.visible.drain(..) {
-                self.faces[f as usize].alive = true;
+                self.faces.at_mut(f).alive = true;
             }
             return false;
         }
-        let apex = self.vertices.len() as u32;
+        let apex = self.vertices.short_len();
         self.vertices.push(vertex);
-        let first = self.faces.len() as u32;
-        let last = first + self.horizon.len() as u32 - 1;
+        let first = self.faces.short_len();
+        let last = first + self.horizon.short_len() - 1;
         for (i, new) in (first..=last).enumerate() {
             let outside = self.horizon[i];
             let [a, b] = self.edge_corners(outside);
@@ -225,14 +228,14 @@ impl ExpandingPolytope {
             // As seen from the new face, the shared edge runs the other way.
             let across = [outside, face_edge(next, 2), face_edge(previous, 1)];
             self.add([b, a, apex], across);
-            self.faces[face_of(outside) as usize].across[number(outside)] = face_edge(new, 0);
+            self.faces.at_mut(face_of(outside)).across[number(outside)] = face_edge(new, 0);
         }
         true
     }
 
     /// The corners where an edge starts and ends, in its own face's sense.
     fn edge_corners(&self, edge: FaceEdge) -> [u32; 2] {
-        let corners = self.faces[face_of(edge) as usize].corners;
+        let corners = self.faces.at_ref(face_of(edge)).corners;
         let k = number(edge);
         [corners[k], corners[NEXT[k]]]
     }
@@ -245,10 +248,10 @@ impl ExpandingPolytope {
         self.stack.clear();
         self.kill(face);
         for k in (0..3).rev() {
-            self.stack.push(self.faces[face as usize].across[k]);
+            self.stack.push(self.faces.at_ref(face).across[k]);
         }
         while let Some(edge) = self.stack.pop() {
-            let f = &self.faces[face_of(edge) as usize];
+            let f = self.faces.at_ref(face_of(edge));
             if !f.alive {
                 continue;
             }
@@ -265,7 +268,7 @@ impl ExpandingPolytope {
     }
 
     fn kill(&mut self, face: u32) {
-        self.faces[face as usize].alive = false;
+        self.faces.at_mut(face).alive = false;
         self.visible.push(face);
     }
 
@@ -300,7 +303,7 @@ impl ExpandingPolytope {
         } else {
             (DVec3::ZERO, f64::INFINITY)
         };
-        let face = self.faces.len() as u32;
+        let face = self.faces.short_len();
         self.faces.push(Face {
             corners,
             across,

@@ -7,16 +7,22 @@ use crate::curved::Body;
 use crate::parry::capsules::update_capsules;
 use crate::parry::convert::Core;
 use crate::parry::manifold::{CurvedPair, CurvedUpdate, UpdateManifold};
+use crate::parry::operand::is_hull;
 use crate::parry::order::PairOrder;
 use crate::parry::workspace::ThreadWorkspace;
 
 /// Whether a shape is a cylinder or a cone.
-pub(crate) fn is_curved(shape: &dyn Shape) -> bool {
+fn is_curved(shape: &dyn Shape) -> bool {
     use ShapeType::{Cone, Cylinder, RoundCone, RoundCylinder};
     matches!(
         shape.shape_type(),
         Cylinder | Cone | RoundCylinder | RoundCone
     )
+}
+
+/// Whether a shape is a hull, a cylinder or a cone: those of which one makes a pair ours.
+pub(crate) fn is_hull_or_curved(shape: &dyn Shape) -> bool {
+    is_hull(shape) || is_curved(shape)
 }
 
 /// Brings a manifold up to date; pairs of other shapes are not supported.

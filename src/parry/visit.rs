@@ -4,12 +4,10 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::Unsupported;
 use parry3d::shape::{Shape, ShapeType, TypedShape};
 
-use crate::curved::Body;
 use crate::map_pair::map_pair;
 use crate::parry::convert::{self, Core};
 use crate::parry::hull_cache::HullCache;
 use crate::parry::hull_cache::epoch::Epoch;
-use crate::parry::instances::HullPartner;
 use crate::parry::operand::{Operand, PreparedOperand};
 use crate::parry::order::PairOrder;
 use crate::parry::pair::{Pair, PairVisitor};
@@ -124,55 +122,27 @@ impl HullOperand<'_> {
         let typed = other.as_typed_shape();
         if let TypedShape::HalfSpace(half_space) = typed {
             let half_space = convert::half_space(half_space).ok_or(Unsupported)?;
-            return self.with(&half_space, 0.0, |pair, workspace| {
-                visitor.visit_half_space(pair, workspace)
-            });
+            return self.with(&half_space, 0.0, visitor, V::visit_half_space);
         }
-        let found = Core::of_typed(typed);
-        let Some((core, border_radius)) = &found else {
-            return Err(Unsupported);
-        };
-        match core {
-            Core::Ball(core) => self.polytope(core, *border_radius, visitor),
-            Core::Segment(core) => self.polytope(core, *border_radius, visitor),
-            Core::Triangle(core) => self.polytope(core, *border_radius, visitor),
-            Core::Cuboid(core) => self.polytope(core, *border_radius, visitor),
-            Core::Cylinder(core) => self.curved(core, *border_radius, visitor),
-            Core::Cone(core) => self.curved(core, *border_radius, visitor),
+        let (core, border) = Core::of_typed(typed).ok_or(Unsupported)?;
+        match &core {
+            Core::Ball(core) => self.with(core, border, visitor, V::visit),
+            Core::Segment(core) => self.with(core, border, visitor, V::visit),
+            Core::Triangle(core) => self.with(core, border, visitor, V::visit),
+            Core::Cuboid(core) => self.with(core, border, visitor, V::visit),
+            Core::Cylinder(core) => self.with(core, border, visitor, V::visit_curved),
+            Core::Cone(core) => self.with(core, border, visitor, V::visit_curved),
         }
     }
 
+    /// Calls one of the visitor's methods with the hull and the other shape.
     #[inline]
-    fn polytope<V: PairVisitor>(
-        &self,
-        other: &impl HullPartner,
-        border_radius: Real,
-        visitor: &mut V,
-    ) -> Result<V::Answer, Unsupported> {
-        self.with(other, border_radius, |pair, workspace| {
-            visitor.visit(pair, workspace)
-        })
-    }
-
-    #[inline]
-    fn curved<V: PairVisitor>(
-        &self,
-        other: &impl Body,
-        border_radius: Real,
-        visitor: &mut V,
-    ) -> Result<V::Answer, Unsupported> {
-        self.with(other, border_radius, |pair, workspace| {
-            visitor.visit_curved(pair, workspace)
-        })
-    }
-
-    /// Calls the visitor with the hull and the other shape.
-    #[inline]
-    fn with<B, T>(
+    fn with<V, B, T>(
         &self,
         other: &B,
         border_radius: Real,
-        visit: impl FnOnce(&Pair<'_, B>, &mut Workspace) -> Result<T, Unsupported>,
+        visitor: &mut V,
+        visit: impl FnOnce(&mut V, &Pair<'_, B>, &mut Workspace) -> Result<T, Unsupported>,
     ) -> Result<T, Unsupported> {
         ThreadWorkspace::with(
             |ThreadWorkspace {
@@ -187,7 +157,7 @@ impl HullOperand<'_> {
                     border_radii: [prepared.border_radius, border_radius.into()],
                     order: self.order,
                 };
-                visit(&pair, workspace)
+                visit(visitor, &pair, workspace)
             },
         )
     }

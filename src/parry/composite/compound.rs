@@ -74,7 +74,7 @@ fn box_in(compound: &Compound, part: u32, pose: &Pose) -> Aabb {
 }
 
 fn part<'a>(compound: &'a Compound, seams: &'a Seams<'_>, id: u32) -> SubShape<'a> {
-    let (pos, shape) = &compound.shapes()[id as usize];
+    let (pos, shape) = compound.shapes().at_ref(id);
     SubShape {
         id,
         operand: Operand::new(&**shape),

@@ -16,8 +16,7 @@ use parry3d::shape::Shape;
 
 use super::spread::{PartContact, Spread};
 use crate::manifold::MAX_POINTS;
-use crate::parry::curved::is_curved;
-use crate::parry::operand::is_hull;
+use crate::parry::curved::is_hull_or_curved;
 use crate::tuning::{ALL_LEVEL, ONE_DEPTH, ONE_PLANE_COS, RISE};
 
 /// With more planes than these, contacts in the others stay as they are.
@@ -198,12 +197,12 @@ fn is_ours<M, C>([s1, s2]: [&dyn Shape; 2], manifold: &ContactManifold<M, C>) ->
 
 fn is_part_ours(shape: &dyn Shape, part: u32) -> bool {
     let Some(compound) = shape.as_compound() else {
-        return is_hull(shape) || is_curved(shape);
+        return is_hull_or_curved(shape);
     };
     let part = usize::try_from(part)
         .ok()
         .and_then(|part| compound.shapes().get(part));
-    part.is_some_and(|(_, part)| is_hull(&**part) || is_curved(&**part))
+    part.is_some_and(|(_, part)| is_hull_or_curved(&**part))
 }
 
 /// The normal in the frame of the first shape.

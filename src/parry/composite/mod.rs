@@ -23,8 +23,7 @@ pub(crate) mod seams;
 mod spread;
 mod sub_manifolds;
 
-use crate::parry::curved::is_curved;
-use crate::parry::operand;
+use crate::parry::curved::is_hull_or_curved;
 use crate::parry::order::PairOrder;
 use crate::parry::update::Updater;
 use mesh::Triangles;
@@ -166,7 +165,7 @@ where
             return true;
         }
         if let Some(triangles) = Triangles::of(first)
-            && (operand::is_hull(second) || is_curved(second))
+            && is_hull_or_curved(second)
         {
             let sub_manifolds = begin(manifolds, workspace);
             mesh::triangles_and_hull(sub_manifolds, pos12, triangles, second, order);

@@ -4,6 +4,7 @@ use parry3d::bounding_volume::Aabb;
 use parry3d::math::Pose;
 use parry3d::shape::{Compound, CompoundFlags, ConvexPolyhedron, SharedShape};
 
+use crate::at::At;
 use crate::parry::constraints::Constraints;
 use crate::parry::hull_shape::HullShape;
 use crate::parry::part_seams::PartSeams;
@@ -22,7 +23,7 @@ impl<'a> Seams<'a> {
     pub fn near(compound: &'a Compound, aabb: &Aabb) -> Self {
         let is_left_out = |part: u32| {
             compound.part_normal_constraints(part).is_none()
-                && polyhedron(&compound.shapes()[part as usize].1).is_some()
+                && polyhedron(&compound.shapes().at_ref(part).1).is_some()
         };
         let is_flagged = compound.flags().contains(CompoundFlags::FIX_INTERNAL_EDGES);
         let is_incomplete = is_flagged && compound.bvh().intersect_aabb(aabb).any(is_left_out);
@@ -37,7 +38,7 @@ impl<'a> Seams<'a> {
     pub fn of_part<'s>(&'s self, id: u32, pos: &'s Pose) -> Constraints<'s> {
         let compound = self.compound;
         let normals = match &self.computed {
-            Some(normals) => normals[id as usize].as_ref(),
+            Some(normals) => normals.at_ref(id).as_ref(),
             None => compound.part_normal_constraints(id),
         };
         let seams = |normals| PartSeams {
