@@ -8,6 +8,7 @@
 //!
 //! - `separated`, `touching`, `shallow` (1 % deep), `deep` (20 %): two hulls of so many random vertices
 //!   on a trajectory.
+//! - `boxes`, `prisms` (of twelve sides): the same of two of them; touching (1), shallow (2), deep (3).
 //! - `resting`: a prism of so many vertices on another one, trembling by thousandths of a millimetre.
 //! - `new`: in each frame another hull of so many vertices meets one that is known.
 //! - `compound`: a hull of eight vertices slides over a compound of so many boxes as hulls.
@@ -29,11 +30,13 @@ const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.j
 const SHORT: usize = 40;
 
 /// The cases, and their numbers of vertices or parts.
-const CASES: [(&str, &[usize]); 9] = [
+const CASES: [(&str, &[usize]); 11] = [
     ("separated", &VERTICES),
     ("touching", &VERTICES),
     ("shallow", &VERTICES),
     ("deep", &VERTICES),
+    ("boxes", &[1, 2, 3]),
+    ("prisms", &[1, 2, 3]),
     ("resting", &[8, 16, 32, 64]),
     ("new", &[12, 60]),
     ("compound", &[9, 64]),
@@ -123,6 +126,18 @@ fn pairs(case: &str, size: usize) -> Vec<([SharedShape; 2], Pose)> {
                 Pose::translation(x, 0.495, 0.4)
             };
             along([tiles, small], (0..FRAMES).map(sliding).collect())
+        }
+        "boxes" => {
+            let halves = [Vector::new(0.6, 0.5, 0.7), Vector::new(0.8, 0.4, 0.5)];
+            let shapes = halves.map(|half| hulls::cuboid(half).expect("a box"));
+            let poses = trajectory(&shapes, GAPS[size].1, 1.0);
+            along(shapes, poses)
+        }
+        "prisms" => {
+            let heights = [0.5, 0.7];
+            let shapes = heights.map(|half| hulls::prism(12, 1.0, half).expect("a prism"));
+            let poses = trajectory(&shapes, GAPS[size].1, 1.0);
+            along(shapes, poses)
         }
         "cuboid-cylinder" | "cylinder-cylinder" => {
             let cylinder = SharedShape::cylinder(0.5, 0.4);

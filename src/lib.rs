@@ -76,6 +76,7 @@ mod arg_max;
 mod at;
 #[cfg(feature = "bevy")]
 pub mod bevy;
+mod corners;
 mod curved;
 mod epa;
 mod gjk;

@@ -3,8 +3,9 @@
 use std::cmp::Ordering;
 use std::iter;
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
+pub use crate::corners::{FaceCorners, FacePoints};
 pub use crate::ids::{EdgeId, FaceId, ShapeId, VertexId};
 use crate::pose::RelativePose;
 use crate::stats::Cost;
@@ -65,11 +66,6 @@ pub trait Support {
     fn radius(&self) -> f64;
 }
 
-/// The corners of a polygon in their order.
-pub trait FacePoints: ExactSizeIterator<Item = DVec3> + DoubleEndedIterator + Clone {}
-
-impl<T: ExactSizeIterator<Item = DVec3> + DoubleEndedIterator + Clone> FacePoints for T {}
-
 /// A convex polytope: a support mapping with faces and edges around it.
 ///
 /// The methods may panic for vertices and faces that do not exist ([`has_face`](Self::has_face)). Edges are
@@ -108,11 +104,8 @@ pub trait Polytope: Support {
     /// The `i`-th vertex of a face, counter-clockwise seen from outside.
     fn face_vertex(&self, face: FaceId, i: usize) -> VertexId;
 
-    /// The corners of a face in f32, by their numbers.
-    #[inline(always)]
-    fn face_corners(&self, face: FaceId) -> impl Fn(usize) -> Vec3 + Copy {
-        move |i| self.vertex(self.face_vertex(face, i)).as_vec3()
-    }
+    /// The corners of a face by their numbers: for more than one, this is a single look-up.
+    fn face_corners(&self, face: FaceId) -> impl FaceCorners;
 
     /// How far inside a face a point of its plane is, negative outside, if this costs less than a look at its
     /// corners.

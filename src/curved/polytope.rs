@@ -24,9 +24,9 @@ impl<P: Polytope> Body for P {
 
     fn inset(&self, flat: &FlatSide, p: DVec3) -> f64 {
         match flat.outline {
-            Outline::Polygon(face) => self
-                .face_inset(face, p)
-                .unwrap_or_else(|| inset(self, face, flat.normal, p, 0.0)),
+            Outline::Polygon(face) => self.face_inset(face, p).unwrap_or_else(|| {
+                inset(self.face_corners(face), self.radius(), flat.normal, p, 0.0)
+            }),
             Outline::Disc { .. } => 0.0,
         }
     }

@@ -100,13 +100,13 @@ impl CachedPolytope {
             let [a, b, c] = face.map(|v| polytope.vertex(v.into()).w);
             let outward = (b - a).cross(c - a);
             let height = outward.dot(a);
-            let squared = height * height / outward.length_squared();
-            // A face without area has the distance NaN, and also ends here.
+            let squared = height * height;
+            // A face without area also ends here.
             if !(height > 0.0 && squared > 0.0) {
                 return f64::NEG_INFINITY;
             }
             // Along any direction a plane is no nearer than its distance, and most planes are far away.
-            if squared < least {
+            if squared < least * outward.length_squared() {
                 least = min_no_nan(least, cap.squared_reach(outward, height));
             }
         }
@@ -190,7 +190,10 @@ fn vertex_at<A: Polytope, B: Polytope>(key: [u16; 2], cso: &Cso<'_, A, B>) -> Op
     }
     let ids @ [id_1, id_2] = key.map(VertexId::from);
     let known = cso.shape_1.clamp_vertex(id_1) == id_1 && cso.shape_2.clamp_vertex(id_2) == id_2;
-    known.then(|| cso.vertex(ids))
+    if !known {
+        return None;
+    }
+    Some(cso.vertex(ids))
 }
 
 #[cfg(test)]

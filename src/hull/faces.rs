@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 use super::clusters::FaceClusters;
 use super::graph::{FaceCorner, NO_EDGE, pack_edge};
-use crate::support::{EdgeId, FaceId};
+use crate::support::{EdgeId, FaceCorners, FaceId, VertexId};
 
 /// The faces, and the clusters of some of them.
 #[derive(Clone, Debug)]
@@ -33,6 +33,43 @@ pub(super) struct FaceRecord {
 /// The mark of a face beside another one of about the same direction: only such faces are in clusters. Most
 /// faces are not, and then nothing else need be read. No hull has so many corners that the bit is in use.
 pub(super) const BESIDE_LIKE: u32 = 1 << 31;
+
+/// A face or an outline, with the points of its hull.
+#[derive(Clone, Copy)]
+pub(super) struct PolygonCorners<'a> {
+    pub points: &'a [Vec3],
+    pub corners: &'a [FaceCorner],
+}
+
+impl FaceCorners for PolygonCorners<'_> {
+    #[inline]
+    fn count(self) -> usize {
+        self.corners.len()
+    }
+
+    #[inline]
+    fn vertex(self, i: usize) -> VertexId {
+        self.corners[i].vertex.into()
+    }
+
+    #[inline]
+    fn point(self, i: usize) -> Vec3 {
+        self.points[usize::from(self.corners[i].vertex)]
+    }
+
+    #[inline]
+    fn edge(self, i: usize) -> Option<EdgeId> {
+        edge(self.corners, i)
+    }
+}
+
+/// The id of the `i`-th side of a polygon, if that side is an edge.
+#[inline]
+fn edge(corners: &[FaceCorner], i: usize) -> Option<EdgeId> {
+    let FaceCorner { vertex, slot } = corners[i];
+    let next = corners[if i + 1 < corners.len() { i + 1 } else { 0 }].vertex;
+    (slot != NO_EDGE).then(|| pack_edge(vertex.min(next).into(), slot))
+}
 
 impl FaceRecord {
     /// What comes after the last face: only where its corners end is read.
@@ -86,10 +123,7 @@ impl Faces {
     /// The id of the `i`-th side of a face or an outline, if that side is an edge.
     #[inline]
     pub fn edge(&self, face: FaceId, i: usize) -> Option<EdgeId> {
-        let corners = self.polygon(face);
-        let FaceCorner { vertex, slot } = corners[i];
-        let next = corners[if i + 1 < corners.len() { i + 1 } else { 0 }].vertex;
-        (slot != NO_EDGE).then(|| pack_edge(vertex.min(next).into(), slot))
+        edge(self.polygon(face), i)
     }
 
     /// Whether a neighbour of a face has about the same direction.

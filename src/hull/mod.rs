@@ -18,10 +18,12 @@ pub use error::HullError;
 use glam::{DVec3, Vec3};
 
 use crate::stats::Cost;
-use crate::support::{EdgeId, FaceId, FacePoints, Polytope, ShapeId, Support, VertexId};
+use crate::support::{
+    EdgeId, FaceCorners, FaceId, FacePoints, Polytope, ShapeId, Support, VertexId,
+};
 use climb::HillClimb;
 use cluster_growth::grow_clusters;
-use faces::Faces;
+use faces::{Faces, PolygonCorners};
 use graph::EdgeGraph;
 use scan::Scan;
 use start_table::StartTable;
@@ -229,10 +231,12 @@ impl Polytope for Hull {
         self.faces.polygon(face)[i].vertex.into()
     }
 
-    #[inline(always)]
-    fn face_corners(&self, face: FaceId) -> impl Fn(usize) -> Vec3 + Copy {
-        let (points, polygon) = (&*self.points, self.faces.polygon(face));
-        move |i| points[usize::from(polygon[i].vertex)]
+    #[inline]
+    fn face_corners(&self, face: FaceId) -> impl FaceCorners {
+        PolygonCorners {
+            points: &self.points,
+            corners: self.faces.polygon(face),
+        }
     }
 
     #[inline]

@@ -2,7 +2,7 @@
 //! pressed into the ground has corners below the surface that belong to no single face.
 
 use super::contact_frame::{ContactFrame, FaceHeight};
-use crate::support::{FaceId, Polytope, VertexId};
+use crate::support::{FaceCorners, FaceId, Polytope, VertexId};
 use crate::tuning::STEEPEST_BESIDE;
 
 /// Adds the planes of the adjacent faces of `face` that face the other shape.
@@ -15,8 +15,8 @@ pub(super) fn add_planes(
 ) {
     // Of the two faces at an edge, the other one is that whose normal is farther from the normal of `face`.
     let behind = -shape.face_normal(face);
-    let sides = 0..shape.face_len(face);
-    let edges = sides.filter_map(|i| shape.face_edge(face, i));
+    let corners = shape.face_corners(face);
+    let edges = (0..corners.count()).filter_map(|i| corners.edge(i));
     let beside = edges.map(|edge| shape.face_at_edge(edge, behind));
     let seen = beside.filter_map(|other| frame.plane(shape, other, sign));
     planes.extend(seen.filter(|plane| plane.slope_squared() < STEEPEST_BESIDE * STEEPEST_BESIDE));
@@ -28,7 +28,11 @@ pub(super) fn corners(
     face: FaceId,
     planes: &[FaceHeight],
 ) -> impl Iterator<Item = VertexId> {
-    let around = move |face| (0..shape.face_len(face)).map(move |i| shape.face_vertex(face, i));
+    let around = move |face| {
+        let corners = shape.face_corners(face);
+        (0..corners.count()).map(move |i| corners.vertex(i))
+    };
+    let own = around(face);
     let others = planes.iter().flat_map(move |plane| around(plane.face));
-    others.filter(move |&vertex| around(face).all(|corner| corner != vertex))
+    others.filter(move |&vertex| own.clone().all(|corner| corner != vertex))
 }

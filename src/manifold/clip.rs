@@ -147,7 +147,8 @@ impl Clipper {
     }
 
     /// The origin of a corner of the intersection.
-    #[inline]
+    // perf: in a call it would be stored, and told apart twice.
+    #[inline(always)]
     pub fn origin(&self, corner: usize) -> VertexOrigin {
         let source = self.corners.sources[corner] as usize;
         let width = self.subject.width();

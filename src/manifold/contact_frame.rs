@@ -52,8 +52,7 @@ impl ContactFrame {
         })
     }
 
-    /// The outward normal of a face, and how far beyond the origin its plane is. For a segment, it is the
-    /// plane that leans least against the contact normal; a point has none.
+    /// The outward normal of a face, and how far beyond the origin its plane is.
     #[inline(always)]
     fn plane_beyond_origin(
         &self,
@@ -61,20 +60,30 @@ impl ContactFrame {
         face: FaceId,
         sign: f32,
     ) -> Option<(DVec3, f64)> {
-        match shape.face_len(face) {
-            1 => None,
-            2 => {
-                let [from, to] = map_pair([0, 1], |i| shape.vertex(shape.face_vertex(face, i)));
-                let along = (to - from).try_normalize()?;
-                let across = self.normal - along * along.dot(self.normal);
-                let outward = (across * f64::from(sign)).try_normalize()?;
-                Some((outward, outward.dot(from - self.origin)))
-            }
-            _ => {
-                let outward = shape.face_normal(face);
-                Some((outward, shape.face_offset(face) - outward.dot(self.origin)))
-            }
+        let outward = shape.face_normal(face);
+        if outward == DVec3::ZERO {
+            return self.plane_at_segment(shape, face, sign);
         }
+        Some((outward, shape.face_offset(face) - outward.dot(self.origin)))
+    }
+
+    /// The same for a segment: the plane that leans least against the contact normal. A point has none, nor has a
+    /// sliver.
+    #[inline(never)]
+    fn plane_at_segment(
+        &self,
+        shape: &impl Polytope,
+        face: FaceId,
+        sign: f32,
+    ) -> Option<(DVec3, f64)> {
+        if shape.face_len(face) != 2 {
+            return None;
+        }
+        let [from, to] = map_pair([0, 1], |i| shape.vertex(shape.face_vertex(face, i)));
+        let along = (to - from).try_normalize()?;
+        let across = self.normal - along * along.dot(self.normal);
+        let outward = (across * f64::from(sign)).try_normalize()?;
+        Some((outward, outward.dot(from - self.origin)))
     }
 
     #[inline(always)]

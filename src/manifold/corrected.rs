@@ -36,7 +36,8 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
         ..*proximity
     };
     let patch = SurfacePair::new(cso, &proximity, normal, planes)?;
-    patch.clip(cso, clipper);
+    let polygons = patch.polygons(cso);
+    patch.clip(polygons, clipper);
     let corners = &clipper.corners;
     let scale = cso.min_radius();
     let least = least - SAME_DEPTH * scale;
@@ -50,7 +51,7 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
         selection.push_all(candidates.spread_out(corners, corners.at(deepest), same));
     }
     let witness = (least, features);
-    Some(patch.contacts(cso, witness, (clipper, candidates), &selection))
+    Some(patch.contacts(polygons, witness, (clipper, candidates), &selection))
 }
 
 /// The face at the extreme vertex in direction `dir` whose normal is nearest to `dir`.

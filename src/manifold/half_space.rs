@@ -11,7 +11,7 @@ use super::scratch::ClipScratch;
 use crate::pose::{RelativePose, is_unit};
 use crate::query::{Feature, Proximity};
 use crate::simd::{DVec3x4, LANES, f64x4, to_f32x4};
-use crate::support::{FaceId, Polytope};
+use crate::support::{FaceCorners, FaceId, Polytope};
 use crate::tuning::{EDGE_ON, SAME_POINT};
 
 /// The contacts of a polytope with the half-space in front of its deepest vertex, which is the witness of
@@ -34,8 +34,9 @@ pub fn half_space_contacts(
     };
     let face = shape.face_at_vertex(witness, normal);
     let polygon = shape.cluster(face).map_or(face, |(outline, _)| outline);
-    let count = shape.face_len(polygon);
-    let corner = |i: usize| shape.face_vertex(polygon, i.min(count - 1));
+    let corners = shape.face_corners(polygon);
+    let count = corners.count();
+    let corner = |i: usize| corners.vertex(i.min(count - 1));
     let contacts = |selection: &Selection| {
         let [a, b, c, d] = selection.corners;
         let vertex = |i: Option<usize>| i.map_or(witness, corner);
@@ -88,10 +89,10 @@ pub fn half_space_polygon(
     if shape.face_normal(face).dot(normal) <= EDGE_ON {
         return Vec::new();
     }
-    let polygon = shape.cluster(face).map_or(face, |(outline, _)| outline);
-    let count = shape.face_len(polygon);
+    let corners = shape.face_corners(shape.cluster(face).map_or(face, |(outline, _)| outline));
+    let count = corners.count();
     let corner = |i: usize| {
-        let vertex = shape.face_vertex(polygon, i % count);
+        let vertex = corners.vertex(i % count);
         let on_1 = shape.vertex(vertex);
         PatchCorner {
             on_1,
@@ -107,7 +108,7 @@ pub fn half_space_polygon(
             kept.push(from);
         }
         if is_near(&from) != is_near(&to) {
-            let edge = shape.face_edge(polygon, i).map(Feature::Edge);
+            let edge = corners.edge(i).map(Feature::Edge);
             let share = (max_distance - from.distance) / (to.distance - from.distance);
             kept.push(PatchCorner {
                 on_1: from.on_1.lerp(to.on_1, share),
@@ -136,15 +137,16 @@ fn push_spread(
         candidates,
         ..
     } = scratch;
-    let count = shape.face_len(polygon);
+    let polygon = shape.face_corners(polygon);
+    let count = polygon.count();
     let plane = frame.projection();
     window.set(count, |numbers| {
-        plane.flatten(numbers.map(shape.face_corners(polygon)))
+        plane.flatten(numbers.map(|i| polygon.point(i)))
     });
     corners.set(window);
     let distances = |row: usize, _, _| {
         let corner = |lane: usize| (LANES * row + lane).min(count - 1);
-        let of_lane = |lane| shape.vertex(shape.face_vertex(polygon, corner(lane)));
+        let of_lane = |lane| shape.vertex(polygon.vertex(corner(lane)));
         to_f32x4(distance(DVec3x4::gather([0, 1, 2, 3], of_lane)))
     };
     let range = f32::NEG_INFINITY..=max_distance as f32;

@@ -58,14 +58,15 @@ pub fn contacts<A: Polytope, B: Polytope>(
     // Along the query's normal nothing is deeper than the query's answer.
     let least = proximity.signed_distance;
     let scale = cso.min_radius();
-    patch.clip(cso, clipper);
+    let polygons = patch.polygons(cso);
+    patch.clip(polygons, clipper);
     let mut selection = choose(&patch, clipper, candidates, [least, max_distance], scale);
     let is_pressed = least < -PRESSED * scale;
     if is_pressed && selection.len < MAX_POINTS && patch.widen(cso, proximity, clipper) {
         selection = choose(&patch, clipper, candidates, [least, max_distance], scale);
     }
     let witness = (least, proximity.features);
-    patch.contacts(cso, witness, (clipper, candidates), &selection)
+    patch.contacts(polygons, witness, (clipper, candidates), &selection)
 }
 
 /// Chooses among the corners of the patch, and the witness, which is `least` deep. Corners nearer than

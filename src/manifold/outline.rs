@@ -7,7 +7,7 @@ use super::patch::SurfacePair;
 use super::scratch::ClipScratch;
 use crate::query::{Feature, Proximity};
 use crate::simd::f32x4;
-use crate::support::{Cso, Polytope};
+use crate::support::{Cso, FaceCorners, Polytope};
 
 /// A corner of the region of contact.
 #[derive(Clone, Copy, Debug)]
@@ -51,14 +51,15 @@ pub fn contact_polygon<A: Polytope, B: Polytope>(
     let Some(patch) = SurfacePair::new(cso, near, near.normal, planes) else {
         return Vec::new();
     };
-    patch.clip(cso, clipper);
+    let polygons = patch.polygons(cso);
+    patch.clip(polygons, clipper);
     let corners = outline(corners(&patch, clipper));
     let corners = cut(&patch, &corners, max_distance as f32);
     let features = |corner: &Corner| match corner.origin {
-        Origin::Clip(i) => patch.features(cso, clipper, i),
+        Origin::Clip(i) => patch.features(polygons, clipper, i),
         Origin::Cut(ends) => {
             let side = common_side(ends.map(|i| clipper.origin(i)), clipper);
-            patch.features_on_side(cso, side, corner.at)
+            patch.features_on_side(polygons, side, corner.at)
         }
     };
     let corners = corners.iter().map(|corner| PatchCorner {
@@ -79,17 +80,16 @@ impl SurfacePair<'_> {
     }
 
     /// The features that meet at a position on a side of one shape's polygon, or inside both.
-    fn features_on_side<A: Polytope, B: Polytope>(
+    fn features_on_side(
         &self,
-        cso: &Cso<'_, A, B>,
+        (window, subject): (impl FaceCorners, impl FaceCorners),
         side: Option<(usize, usize)>,
         at: Vec2,
     ) -> [Feature; 2] {
-        let [f1, f2] = self.polygons();
         let mut features = [0, 1].map(|shape| Feature::Face(self.surfaces[shape].face_at(at)));
         match side {
-            Some((0, i)) => features[0] = Feature::of_side(cso.shape_1, f1, i),
-            Some((_, i)) => features[1] = Feature::of_side(cso.shape_2, f2, i),
+            Some((0, i)) => features[0] = Feature::of_side(window, i),
+            Some((_, i)) => features[1] = Feature::of_side(subject, i),
             None => {}
         }
         features

@@ -10,7 +10,7 @@ use super::contacts::{Contacts, MAX_POINTS};
 use super::reduce::{Candidates, Selection};
 use crate::query::{Feature, Proximity};
 use crate::simd::{LANES, lane_mask};
-use crate::support::{Cso, FaceId, Polytope};
+use crate::support::{Cso, FaceCorners, FaceId, Polytope};
 use crate::tuning::LEVEL_SLOPE;
 
 /// The surface of one shape: the face in contact, alone or with all faces of its cluster, or with the faces
@@ -123,15 +123,17 @@ impl<'s> SurfacePair<'s> {
 
     /// The corners of the intersection of both polygons.
     #[inline]
-    pub fn clip<A: Polytope, B: Polytope>(&self, cso: &Cso<'_, A, B>, clipper: &mut Clipper) {
-        let [f1, f2] = self.polygons();
-        let (shape_1, shape_2) = (cso.shape_1, cso.shape_2);
+    pub fn clip(
+        &self,
+        (window, subject): (impl FaceCorners, impl FaceCorners),
+        clipper: &mut Clipper,
+    ) {
         let [projection_1, projection_2] = &self.projections;
-        clipper.window.set(shape_1.face_len(f1), |numbers| {
-            projection_1.flatten(numbers.map(shape_1.face_corners(f1)))
+        clipper.window.set(window.count(), |numbers| {
+            projection_1.flatten(numbers.map(|i| window.point(i)))
         });
-        clipper.subject.set(shape_2.face_len(f2), |numbers| {
-            projection_2.flatten(numbers.map(shape_2.face_corners(f2)))
+        clipper.subject.set(subject.count(), |numbers| {
+            projection_2.flatten(numbers.map(|i| subject.point(i)))
         });
         clipper.intersect();
     }
@@ -185,9 +187,9 @@ impl<'s> SurfacePair<'s> {
     /// The contacts at the chosen corners of the intersection, with the measured distances between the
     /// surfaces, but at least `least`. The witness is where `features` meet, at the distance `least`.
     #[inline(always)]
-    pub fn contacts<A: Polytope, B: Polytope>(
+    pub fn contacts(
         &self,
-        cso: &Cso<'_, A, B>,
+        polygons: (impl FaceCorners, impl FaceCorners),
         (least, features): (f64, [Feature; 2]),
         (clipper, candidates): (&Clipper, &Candidates),
         selection: &Selection,
@@ -198,20 +200,16 @@ impl<'s> SurfacePair<'s> {
         for (lane, corner) in selection.corners[..selection.len].iter().enumerate() {
             if let &Some(corner) = corner {
                 of_corner |= 1 << lane;
-                contacts[lane] = self.features(cso, clipper, corner);
+                contacts[lane] = self.features(polygons, clipper, corner);
             }
         }
         let of_corner = lane_mask(of_corner);
-        let [a, b, c, d] = selection.numbers();
-        let at = |corner| clipper.corners.at(corner);
-        let [at_a, at_b, at_c, at_d] = [at(a), at(b), at(c), at(d)];
+        let [a, b, c, d] = selection.numbers().map(|corner| candidates.corner(corner));
+        let [x, y, measured] = [0, 1, 2].map(|i| f32x4::new([a[i], b[i], c[i], d[i]]));
         // The witness is the origin.
-        let x = of_corner & f32x4::new([at_a.x, at_b.x, at_c.x, at_d.x]);
-        let y = of_corner & f32x4::new([at_a.y, at_b.y, at_c.y, at_d.y]);
+        let (x, y) = (of_corner & x, of_corner & y);
         let height = of_corner & self.surfaces[0].heights(x, y);
         let least = f32x4::splat(least as f32);
-        let far = |corner| candidates.distance(corner);
-        let measured = f32x4::new([far(a), far(b), far(c), far(d)]);
         let distance = of_corner.bitselect(measured.fast_max(least), least);
         Contacts {
             on_1: projection_1.points(x, y, height),
@@ -224,37 +222,38 @@ impl<'s> SurfacePair<'s> {
 
     /// The features that meet at a corner of the intersection.
     #[inline(always)]
-    pub fn features<A: Polytope, B: Polytope>(
+    pub fn features(
         &self,
-        cso: &Cso<'_, A, B>,
+        (window, subject): (impl FaceCorners, impl FaceCorners),
         clipper: &Clipper,
         corner: usize,
     ) -> [Feature; 2] {
-        let [f1, f2] = self.polygons();
         let face = |side: usize| {
             let at = clipper.corners.at(corner);
             Feature::Face(self.surfaces[side].face_at(at))
         };
         match clipper.origin(corner) {
-            VertexOrigin::Subject(i) => {
-                let vertex = cso.shape_2.face_vertex(f2, i.into());
-                [face(0), Feature::Vertex(vertex)]
-            }
-            VertexOrigin::Window(i) => {
-                let vertex = cso.shape_1.face_vertex(f1, i.into());
-                [Feature::Vertex(vertex), face(1)]
-            }
+            VertexOrigin::Subject(i) => [face(0), Feature::Vertex(subject.vertex(i.into()))],
+            VertexOrigin::Window(i) => [Feature::Vertex(window.vertex(i.into())), face(1)],
             VertexOrigin::Beside(0, vertex) => [Feature::Vertex(vertex), face(1)],
             VertexOrigin::Beside(_, vertex) => [face(0), Feature::Vertex(vertex)],
             VertexOrigin::Crossing(i, j) => [
-                Feature::of_side(cso.shape_1, f1, i.into()),
-                Feature::of_side(cso.shape_2, f2, j.into()),
+                Feature::of_side(window, i.into()),
+                Feature::of_side(subject, j.into()),
             ],
         }
     }
 
+    /// The faces in contact, or the outlines of their clusters.
     #[inline]
-    pub fn polygons(&self) -> [FaceId; 2] {
-        [self.surfaces[0].polygon, self.surfaces[1].polygon]
+    pub fn polygons<'a, A: Polytope, B: Polytope>(
+        &self,
+        cso: &Cso<'a, A, B>,
+    ) -> (
+        impl FaceCorners + use<'a, A, B>,
+        impl FaceCorners + use<'a, A, B>,
+    ) {
+        let [f1, f2] = [self.surfaces[0].polygon, self.surfaces[1].polygon];
+        (cso.shape_1.face_corners(f1), cso.shape_2.face_corners(f2))
     }
 }

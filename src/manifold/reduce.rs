@@ -98,8 +98,18 @@ impl Candidates {
     /// The distance of the faces at a corner; some number if there is no such corner.
     #[inline(always)]
     pub fn distance(&self, corner: usize) -> f32 {
+        let [_, _, distance] = self.corner(corner);
+        distance
+    }
+
+    /// The position of a corner, and the distance of the faces there; some numbers if there is no such corner.
+    #[inline(always)]
+    pub fn corner(&self, corner: usize) -> [f32; 3] {
         let four = self.fours.get(corner / LANES);
-        four.map_or(0.0, |four| four.distance.as_array()[corner % LANES])
+        let of_lane = |row: &f32x4| row.as_array()[corner % LANES];
+        four.map_or([0.0; 3], |four| {
+            [&four.x, &four.y, &four.distance].map(of_lane)
+        })
     }
 
     /// Removes and returns the nearest of the corners beyond the range.

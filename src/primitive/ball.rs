@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{EdgeId, FaceId, Polytope, Support, VertexId};
+use crate::support::{EdgeId, FaceCorners, FaceId, Polytope, Support, VertexId};
 
 /// The core of a ball around its origin: a point. The radius is a border, which is subtracted from the
 /// distance of the cores.
@@ -73,6 +73,11 @@ impl Polytope for Ball {
     #[inline]
     fn face_vertex(&self, _: FaceId, _: usize) -> VertexId {
         VertexId::default()
+    }
+
+    #[inline]
+    fn face_corners(&self, face: FaceId) -> impl FaceCorners {
+        (self, face)
     }
 
     #[inline]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{EdgeId, FaceId, Polytope, Support, VertexId};
+use crate::support::{EdgeId, FaceCorners, FaceId, Polytope, Support, VertexId};
 
 /// A box by its half extents. Bit `k` of a vertex id is set where coordinate `k` is positive;
 /// face `2 k` looks along axis `k`, face `2 k + 1` against it.
@@ -116,6 +116,11 @@ impl Polytope for CuboidPolytope {
         let mut insets = self.half_extents - p.abs();
         insets[face.index() / 2] = f64::INFINITY;
         Some(insets.min_element())
+    }
+
+    #[inline]
+    fn face_corners(&self, face: FaceId) -> impl FaceCorners {
+        (self, face)
     }
 
     #[inline]

@@ -19,3 +19,30 @@ pub use cylinder::Cylinder;
 pub use segment::Segment;
 pub(crate) use segment::nearest_share;
 pub use triangle::TrianglePolytope;
+
+use glam::Vec3;
+
+use crate::support::{EdgeId, FaceCorners, FaceId, Polytope, VertexId};
+
+/// A face of a shape where look-ups cost nothing.
+impl<P: Polytope> FaceCorners for (&P, FaceId) {
+    #[inline]
+    fn count(self) -> usize {
+        self.0.face_len(self.1)
+    }
+
+    #[inline]
+    fn vertex(self, i: usize) -> VertexId {
+        self.0.face_vertex(self.1, i)
+    }
+
+    #[inline]
+    fn point(self, i: usize) -> Vec3 {
+        self.0.vertex(self.vertex(i)).as_vec3()
+    }
+
+    #[inline]
+    fn edge(self, i: usize) -> Option<EdgeId> {
+        self.0.face_edge(self.1, i)
+    }
+}

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{EdgeId, FaceId, Polytope, Support, VertexId};
+use crate::support::{EdgeId, FaceCorners, FaceId, Polytope, Support, VertexId};
 
 /// The core of a capsule: the segment along its axis. The radius is a border, which is subtracted from the
 /// distance of the cores. The ends have the ids 0 and 1.
@@ -106,6 +106,11 @@ impl Polytope for Segment {
     #[inline]
     fn face_vertex(&self, _: FaceId, i: usize) -> VertexId {
         VertexId::new(i)
+    }
+
+    #[inline]
+    fn face_corners(&self, face: FaceId) -> impl FaceCorners {
+        (self, face)
     }
 
     #[inline]

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{EdgeId, FaceId, Polytope, Support, VertexId};
+use crate::support::{EdgeId, FaceCorners, FaceId, Polytope, Support, VertexId};
 
 /// A triangle. Face 0 is seen counter-clockwise, face 1 is its back.
 #[derive(Clone, Copy, Debug)]
@@ -106,6 +106,11 @@ impl Polytope for TrianglePolytope {
     #[inline]
     fn face_vertex(&self, face: FaceId, i: usize) -> VertexId {
         VertexId::new(if face.index() == 0 { i } else { 2 - i })
+    }
+
+    #[inline]
+    fn face_corners(&self, face: FaceId) -> impl FaceCorners {
+        (self, face)
     }
 
     #[inline]

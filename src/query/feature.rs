@@ -1,7 +1,7 @@
 //! Features: parts of a polytope's boundary. Kinds of features are distinguished here; the stages of a query
 //! work with their vertices and faces.
 
-use crate::support::{Cso, CsoVertex, EdgeId, FaceId, Polytope, VertexId};
+use crate::support::{Cso, CsoVertex, EdgeId, FaceCorners, FaceId, Polytope, VertexId};
 use glam::DVec3;
 
 /// A part of a polytope's boundary.
@@ -104,10 +104,10 @@ impl Feature {
 
     /// The `i`-th side of a polygon: an edge, or its first corner if the side cuts across faces.
     #[inline]
-    pub(crate) fn of_side(shape: &impl Polytope, polygon: FaceId, i: usize) -> Self {
-        match shape.face_edge(polygon, i) {
+    pub(crate) fn of_side(polygon: impl FaceCorners, i: usize) -> Self {
+        match polygon.edge(i) {
             Some(edge) => Self::Edge(edge),
-            None => Self::Vertex(shape.face_vertex(polygon, i)),
+            None => Self::Vertex(polygon.vertex(i)),
         }
     }
 

@@ -23,7 +23,7 @@ use crate::query::feature::Feature;
 use crate::query::types::Proximity;
 use crate::query::verdict::{FacetEdge, Verdict};
 use crate::stats::Cost;
-use crate::support::{Cso, CsoVertex, FaceId, Polytope, VertexId};
+use crate::support::{Cso, CsoVertex, FaceCorners, FaceId, Polytope, VertexId};
 use crate::tolerance::PARALLEL_EDGES;
 use crate::tuning::{MANY_SIDES, SHALLOW};
 
@@ -145,11 +145,12 @@ impl FacetTest {
         if depth >= SHALLOW * cso.shape_1.radius() {
             return false;
         }
-        let inset = || inset(cso.shape_1, face, normal, on_2, signed_distance);
+        let (corners, radius) = (cso.shape_1.face_corners(face), cso.shape_1.radius());
+        let inset = || inset(corners, radius, normal, on_2, signed_distance);
         let proves = |inset| {
             inset > 0.0 && (depth <= 0.0 || cone_contains_ball(inset, depth, cso.center(), normal))
         };
-        let few = (cso.shape_1.face_len(face) <= MANY_SIDES).then(inset);
+        let few = (corners.count() <= MANY_SIDES).then(inset);
         if few.is_some_and(proves) {
             return true;
         }

@@ -187,11 +187,26 @@ impl FlushFaces {
             cso.shape_1.face_normal(face_1),
             cso.shape_2.face_normal(face_2),
         );
-        let inset_1 = inset_in(cso.shape_1, face_1, normal_1, on_1, 0.0, corners);
+        let (shape_1, shape_2) = (cso.shape_1, cso.shape_2);
+        let inset_1 = inset_in(
+            shape_1.face_corners(face_1),
+            shape_1.radius(),
+            normal_1,
+            on_1,
+            0.0,
+            corners,
+        );
         if inset_1 <= 0.0 {
             return None;
         }
-        let inset_2 = inset_in(cso.shape_2, face_2, normal_2, on_2, 0.0, corners);
+        let inset_2 = inset_in(
+            shape_2.face_corners(face_2),
+            shape_2.radius(),
+            normal_2,
+            on_2,
+            0.0,
+            corners,
+        );
         (inset_2 > 0.0).then_some([inset_1, inset_2])
     }
 }

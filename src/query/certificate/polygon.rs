@@ -5,7 +5,7 @@ use crate::simd::{LANES, f32x4};
 use glam::{DVec3, Vec3};
 
 use crate::map_pair::map_pair;
-use crate::support::{FaceId, FacePoints, Polytope};
+use crate::support::{FaceCorners, FaceId, FacePoints, Polytope};
 use crate::tolerance::INSET_ROUNDING;
 use crate::tuning::MANY_SIDES;
 
@@ -18,29 +18,29 @@ pub(in crate::query) enum Corners {
 
 /// A lower bound on how far inside a face the projection of a point is; at most zero if it may be outside. It
 /// is computed in f32 for four sides at a time, and rounding is subtracted. The point is at most `distance`
-/// from the plane.
+/// from the plane. The `radius` is that of the shape.
 #[inline]
 pub(crate) fn inset(
-    shape: &impl Polytope,
-    face: FaceId,
+    face: impl FaceCorners,
+    radius: f64,
     normal: DVec3,
     point: DVec3,
     distance: f64,
 ) -> f64 {
-    inset_in(shape, face, normal, point, distance, Corners::All)
+    inset_in(face, radius, normal, point, distance, Corners::All)
 }
 
 /// The same of all corners, or of four.
 #[inline]
 pub(in crate::query) fn inset_in(
-    shape: &impl Polytope,
-    face: FaceId,
+    face: impl FaceCorners,
+    radius: f64,
     normal: DVec3,
     point: DVec3,
     distance: f64,
     corners: Corners,
 ) -> f64 {
-    let (corner, count) = (shape.face_corners(face), shape.face_len(face));
+    let (corner, count) = (|i| face.point(i), face.count());
     let (normal, at) = (normal.as_vec3(), point.as_vec3());
     let mut least = f32x4::splat(f32::INFINITY);
     let mut is_inside = f32x4::ZERO.simd_eq(f32x4::ZERO);
@@ -64,7 +64,7 @@ pub(in crate::query) fn inset_in(
     if !is_inside.all() {
         return 0.0;
     }
-    let size = 2.0 * shape.radius() + distance.abs() + point.length();
+    let size = 2.0 * radius + distance.abs() + point.length();
     f64::from(least_of(least)) - INSET_ROUNDING * size
 }
 
@@ -79,7 +79,8 @@ pub(in crate::query) fn distance_beside(
     inside: DVec3,
     point: DVec3,
 ) -> f64 {
-    let (corner, count) = (shape.face_corners(face), shape.face_len(face));
+    let face = shape.face_corners(face);
+    let (corner, count) = (|i| face.point(i), face.count());
     let way = point - inside;
     let toward = way.as_vec3();
     let (normal, at) = (normal.as_vec3(), inside.as_vec3());
