@@ -74,7 +74,37 @@ id! {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub struct ShapeId(NonZeroU64);
 
+/// The highest bit. It is set in the ids of shapes that a few numbers describe.
+const DESCRIBED: u64 = 1 << 63;
+
+/// Odd, with about as many ones as zeros. Both halves of a product by it depend on all bits of the other factor.
+const MIXER: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// The kind of a shape that a few numbers describe.
+#[derive(Clone, Copy)]
+pub(crate) enum ShapeKind {
+    Ball = 1,
+    Segment,
+    Triangle,
+    Cuboid,
+    Cylinder,
+    Cone,
+    HalfSpace,
+}
+
 impl ShapeId {
+    /// The id of a shape that a few numbers describe. Two such shapes that differ have the same id with a probability
+    /// of 2^-62.
+    #[inline]
+    pub(crate) fn described_by<const N: usize>(kind: ShapeKind, numbers: [f64; N]) -> Self {
+        let mix = |hash: u64, number: f64| {
+            let product = u128::from(hash ^ number.to_bits()) * u128::from(MIXER);
+            (product >> 64) as u64 ^ product as u64
+        };
+        let hash = numbers.into_iter().fold(kind as u64, mix);
+        Self(NonZeroU64::MIN | DESCRIBED | hash)
+    }
+
     /// One that no shape has.
     pub(crate) fn new() -> Self {
         static LAST: AtomicU64 = AtomicU64::new(0);

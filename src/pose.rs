@@ -1,6 +1,6 @@
 //! The pose of the second shape in the frame of the first, in f64.
 
-use glam::{DMat3, DQuat, DVec3};
+use glam::{DMat3, DQuat, DVec3, Quat};
 use parry3d::math::Pose;
 
 use crate::simd::DVec3x4;
@@ -52,6 +52,20 @@ pub(crate) fn unit_scale(length_squared: f64) -> f64 {
     } else {
         length_squared.sqrt().recip()
     }
+}
+
+/// Whether a quaternion was normalised in f32.
+#[inline]
+pub(crate) fn is_nearly_unit(rotation: Quat) -> bool {
+    (rotation.length_squared() - 1.0).abs() < NEARLY_UNIT as f32
+}
+
+/// How far a point at the distance 1 from the centre moves between two rotations, at most. Both quaternions are nearly
+/// unit.
+#[inline]
+pub(crate) fn chord(a: Quat, b: Quat) -> f64 {
+    // A chord of a turned unit sphere is at most twice that between the unit quaternions.
+    2.0 * f64::from((a - b).length())
 }
 
 /// Whether this is a unit vector up to the rounding of f32, or not finite. For assertions.

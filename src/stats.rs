@@ -14,6 +14,8 @@ pub enum Stage {
     /// One or two support pairs proved separation, along the axis of the previous frame (for a new pair, the
     /// line of centres) or along a tilted one. If the pair hardly moved since, it is proved without any.
     Axis,
+    /// The pair hardly moved since its distance or depth was certified, and the contacts kept their places.
+    Still,
     /// The features of the previous frame, re-evaluated, certified the distance or depth, and the contacts
     /// kept their places.
     Kept,
@@ -37,11 +39,12 @@ pub enum Stage {
 
 impl Stage {
     /// The number of stages.
-    pub const COUNT: usize = 10;
+    pub const COUNT: usize = 11;
     /// All stages, in the order of [`Stats::answered`].
     pub const ALL: [Self; Self::COUNT] = [
         Self::BoundingSpheres,
         Self::Axis,
+        Self::Still,
         Self::Kept,
         Self::Feature,
         Self::FacetWalk,
@@ -57,6 +60,7 @@ impl Stage {
         match self {
             Self::BoundingSpheres => "spheres",
             Self::Axis => "axis",
+            Self::Still => "still",
             Self::Kept => "kept",
             Self::Feature => "feature",
             Self::FacetWalk => "facet walk",

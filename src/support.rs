@@ -6,6 +6,7 @@ use std::iter;
 use glam::DVec3;
 
 pub use crate::corners::{FaceCorners, FacePoints};
+pub(crate) use crate::ids::ShapeKind;
 pub use crate::ids::{EdgeId, FaceId, ShapeId, VertexId};
 use crate::pose::RelativePose;
 use crate::stats::Cost;

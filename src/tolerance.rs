@@ -10,9 +10,8 @@
 const COS_1_DEGREE: f64 = 0.999_847_7;
 const SIN_1_DEGREE: f64 = 0.017_452_4;
 
-/// A face is a set of hull triangles that deviate from one plane by at most this share of the hull's radius.
-/// This is ten f32 roundings: flat caps become one polygon, and the error of what a face certifies is at most
-/// this.
+/// A face is a set of hull triangles that deviate from one plane by at most this share of the hull's radius. This
+/// is ten f32 roundings: flat caps become one polygon, and the error of what a face certifies is at most this.
 pub const FACE_FLATNESS: f64 = 6e-7;
 
 /// Neighbouring triangles are merged into a face only if their normals are within 1 degree (cosine), so that
@@ -25,9 +24,8 @@ pub const FACE_ANGLE_COS: f64 = COS_1_DEGREE;
 /// of round hulls of a thousand vertices above.
 pub const CLUSTER_ANGLE_COS: f64 = COS_1_DEGREE;
 
-/// Faces and clusters grow only over edges that bend by less than 4 degrees (cosine). No other edge can be
-/// inside one: the normal of a triangle is within 1 degree of its face's, and that is within 1 degree of its
-/// cluster's.
+/// Faces and clusters grow only over edges that bend by less than 4 degrees (cosine). No other edge can be inside
+/// one: the normal of a triangle is within 1 degree of its face's, and that is within 1 degree of its cluster's.
 pub const NEARLY_FLAT_COS: f64 = 0.997_564;
 
 /// A triangle lower than this share of the radius is a sliver: rounding of its corners can turn
@@ -93,9 +91,8 @@ pub const GJK_GAP_OF_DISTANCE: f64 = 1e-9;
 /// ...or by less than this share of the pair's size: the rounding of f64 sums of coordinates.
 pub const GJK_GAP_OF_SIZE: f64 = 1e-12;
 
-/// ...or, in scene queries of cylinders and cones, by less than this share of the size: a tenth of the
-/// promised accuracy. A search on a polytope ends at its vertices, but one on a curved surface does not end
-/// by itself.
+/// ...or, in scene queries of cylinders and cones, by less than this share of the size: a tenth of the promised
+/// accuracy. A search on a polytope ends at its vertices, but one on a curved surface does not end by itself.
 pub const GJK_CURVED_GAP: f64 = 1e-6;
 
 /// A distance below this share of the pair's size has no reliable direction. The penetration search, which
@@ -163,6 +160,12 @@ pub const KEPT_DRIFT: f64 = 2e-2;
 /// the contacts are chosen anew.
 pub const KEPT_DEPTH: f64 = 2e-5;
 
+/// Contacts stay as they are, with their normal, while the deepest shows the query's depth up to this share of the
+/// smaller shape's radius. It is reported as it is measured, so this is an error of the answer.
+pub const STILL_DEPTH: f64 = 8e-6;
+/// And while the shapes turn by less than this angle against the stored normals.
+pub const STILL_TILT: f64 = 5e-6;
+
 /// A feature of a `HullShape` answers for directions within 1 degree of its normals, as in parry.
 pub(crate) const FEATURE_ANGLE_COS: f64 = COS_1_DEGREE;
 /// The same limit as a sine, for the slope of an edge.
@@ -173,9 +176,8 @@ pub(crate) const FEATURE_ANGLE_SIN: f64 = SIN_1_DEGREE;
 /// digits, trusting the normal and ignoring the interior lose equally much.
 pub(crate) const MIN_TRIANGLE_SINE: f64 = 1e-8;
 
-/// If the ratio of a tetrahedron's volume to the product of three edges at a corner is below this, the
-/// volumes that decide on which side of its faces the origin lies have lost half of their digits. Then all
-/// faces are tried.
+/// If the ratio of a tetrahedron's volume to the product of three edges at a corner is below this, the volumes that
+/// decide on which side of its faces the origin lies have lost half of their digits. Then all faces are tried.
 pub(crate) const MIN_VOLUME_RATIO: f64 = 1e-8;
 
 /// The weights of a tetrahedron must reproduce the origin up to this share of a vertex's distance from
@@ -187,9 +189,8 @@ pub(crate) const INTERIOR_RESIDUAL: f64 = 1e-12;
 /// halt condition by chance; the rounding of a good answer is far below this.
 pub(crate) const JOHNSON_ERROR: f64 = 1e-10;
 
-/// A cached polytope proves depths up to this share of the search's tolerance. The rest is far more than
-/// rounding, so a search would find the depth that a polytope proves: answers do not depend on what is
-/// cached.
+/// A cached polytope proves depths up to this share of the search's tolerance. The rest is far more than rounding,
+/// so a search would find the depth that a polytope proves: answers do not depend on what is cached.
 pub(crate) const PROOF_MARGIN: f64 = 0.999;
 
 /// Two heights computed in f32 are in the right order if they differ by more than this, for points in the
@@ -238,6 +239,7 @@ pub(crate) const WORST_ERROR: f64 = POSE_ERROR
     + PROJECTION_ERROR
     + DEPTH_ERROR
     + SAME_DEPTH
+    + STILL_DEPTH
     + OUTPUT_ERROR;
 
 /// A normalised quaternion is off by 3/8 of the squared excess, and a rotation by twice that.
@@ -254,14 +256,11 @@ const FACE_ERROR: f64 = 2.0 * FACE_FLATNESS;
 /// The origin may project beside the facet.
 const PROJECTION_ERROR: f64 = DEPTH_GAP;
 /// A depth is certified within one gap, and the facet at hand is preferred within another.
-const DEPTH_ERROR: f64 = 2.0 * DEPTH_GAP;
+pub(crate) const DEPTH_ERROR: f64 = 2.0 * DEPTH_GAP;
 /// Depths are at most two radii and rounded to f32 by half a unit.
 const OUTPUT_ERROR: f64 = f32::EPSILON as f64;
 
-const _: () = assert!(
-    WORST_ERROR <= PROMISED_ERROR,
-    "the errors add up to more than the promise"
-);
+const _: () = assert!(WORST_ERROR <= PROMISED_ERROR, "more than the promise");
 
 /// Cores of capsules that are nearer than this share of the pair's size meet: the direction between their
 /// nearest points is mere rounding.

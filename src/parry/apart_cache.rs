@@ -12,9 +12,10 @@ use glam::{DVec3, Quat, Vec3};
 use parry3d::math::Pose;
 
 use crate::ids::ShapeId;
+use crate::pose::{chord, is_nearly_unit};
 use crate::slot::slot;
 use crate::stats::Stage;
-use crate::tolerance::{NEARLY_UNIT, PROOF_MARGIN};
+use crate::tolerance::PROOF_MARGIN;
 
 /// The number of slots. They take 256 KiB, allocated with the first proof.
 const SLOTS: usize = 1 << SLOT_BITS;
@@ -102,8 +103,7 @@ impl Proof {
             return f64::NAN;
         }
         let moved = exact_difference(pose.translation, self.translation).length();
-        // A chord of a turned unit sphere is at most twice that between the unit quaternions.
-        let turned = 2.0 * f64::from((pose.rotation - self.rotation).length());
+        let turned = chord(pose.rotation, self.rotation);
         f64::from(self.separation) - moved - turned * f64::from(self.lever)
     }
 }
@@ -116,9 +116,4 @@ fn bits(v: Vec3) -> [u32; 3] {
 #[inline]
 fn exact_difference(a: Vec3, b: Vec3) -> DVec3 {
     a.as_dvec3() - b.as_dvec3()
-}
-
-#[inline]
-fn is_nearly_unit(rotation: Quat) -> bool {
-    (rotation.length_squared() - 1.0).abs() < NEARLY_UNIT as f32
 }

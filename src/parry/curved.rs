@@ -87,6 +87,6 @@ impl PairUpdate<'_, '_> {
             border_radii: self.border_radii,
             order: self.order,
         };
-        ThreadWorkspace::with(|thread| self.update.run(&pair, &mut thread.workspace.curved))
+        ThreadWorkspace::with(|thread| self.update.run(&pair, &mut thread.workspace))
     }
 }

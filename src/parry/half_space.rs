@@ -1,12 +1,15 @@
 //! Hulls over half-spaces: one support against the plane is the whole query.
 
+use glam::Quat;
+
 use crate::gjk::SeparatingAxis;
 use crate::parry::convert::HalfSpace;
 use crate::parry::pair::Pair;
+use crate::parry::still_cache::StillPair;
 use crate::pose::RelativePose;
 use crate::query::{Feature, PairMemory, Proximity, Sink};
 use crate::stats::{Cost, Stage};
-use crate::support::{FaceId, Support, VertexId};
+use crate::support::{FaceId, ShapeId, ShapeKind, Support, VertexId};
 
 /// Hands the answer to `sink`, and returns the stage that found it.
 #[inline(always)]
@@ -33,6 +36,26 @@ pub(crate) fn run_into(
         ids: [near.features[0].vertex(pair.hull), VertexId::default()],
     });
     Stage::Axis
+}
+
+/// The pair of a hull and a half-space, whose frame is that of the larger shape.
+pub(crate) fn still_pair(
+    pair: &Pair<'_, HalfSpace>,
+    pose: &RelativePose,
+    rotation: Quat,
+    key: u64,
+) -> Option<StillPair> {
+    let normal = pair.other.normal.to_array();
+    Some(StillPair {
+        key,
+        shapes: [
+            pair.hull.id()?,
+            ShapeId::described_by(ShapeKind::HalfSpace, normal),
+        ],
+        rotation,
+        place: pose.point_to_2(pair.hull.center()),
+        radius: pair.hull.radius(),
+    })
 }
 
 /// Whether the bounding sphere of a hull is above a half-space by more than `beyond`.

@@ -20,6 +20,7 @@ mod part_seams;
 pub mod recording;
 mod scene;
 mod seams_cache;
+mod still_cache;
 mod update;
 mod visit;
 mod workspace;

@@ -10,6 +10,7 @@ use crate::parry::apart_cache::ApartCache;
 use crate::parry::hull_cache::HullCache;
 use crate::parry::hull_cache::registry::PreparedHull;
 use crate::parry::seams_cache::SeamsCache;
+use crate::parry::still_cache::StillCache;
 
 /// What a thread keeps from query to query: prepared hulls, seams of compounds, and memory to work in.
 #[derive(Default)]
@@ -70,4 +71,5 @@ pub(crate) struct Workspace {
     pub clip: ClipScratch,
     pub polytope_cache: PolytopeCache,
     pub apart_cache: ApartCache,
+    pub still_cache: StillCache,
 }

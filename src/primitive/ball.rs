@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{EdgeId, FaceCorners, FaceId, Polytope, Support, VertexId};
+use crate::support::{
+    EdgeId, FaceCorners, FaceId, Polytope, ShapeId, ShapeKind, Support, VertexId,
+};
 
 /// The core of a ball around its origin: a point. The radius is a border, which is subtracted from the
 /// distance of the cores.
@@ -29,6 +31,11 @@ impl Support for Ball {
     fn support(&self, _: DVec3, _: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
         cost.supports += 1;
         (DVec3::ZERO, VertexId::default())
+    }
+
+    #[inline]
+    fn id(&self) -> Option<ShapeId> {
+        Some(ShapeId::described_by(ShapeKind::Ball, [self.radius]))
     }
 
     /// The radius of the border: a point has no length to which a tolerance could be relative.

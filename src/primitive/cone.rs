@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::rim::Rim;
 use crate::stats::Cost;
-use crate::support::{Support, VertexId};
+use crate::support::{ShapeId, ShapeKind, Support, VertexId};
 
 /// A solid cone around its origin, as parry has it: the apex is at `half_height` on the y axis,
 /// the base disc at `-half_height`.
@@ -59,6 +59,14 @@ impl Support for Cone {
     #[inline]
     fn center(&self) -> DVec3 {
         self.center
+    }
+
+    #[inline]
+    fn id(&self) -> Option<ShapeId> {
+        Some(ShapeId::described_by(
+            ShapeKind::Cone,
+            [self.half_height, self.rim.radius],
+        ))
     }
 
     #[inline]

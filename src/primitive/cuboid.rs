@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{EdgeId, FaceCorners, FaceId, Polytope, Support, VertexId};
+use crate::support::{
+    EdgeId, FaceCorners, FaceId, Polytope, ShapeId, ShapeKind, Support, VertexId,
+};
 
 /// A box by its half extents. Bit `k` of a vertex id is set where coordinate `k` is positive;
 /// face `2 k` looks along axis `k`, face `2 k + 1` against it.
@@ -63,6 +65,14 @@ impl Support for CuboidPolytope {
     #[inline]
     fn clamp_vertex(&self, vertex: VertexId) -> VertexId {
         VertexId::new(vertex.index() & 7)
+    }
+
+    #[inline]
+    fn id(&self) -> Option<ShapeId> {
+        Some(ShapeId::described_by(
+            ShapeKind::Cuboid,
+            self.half_extents.to_array(),
+        ))
     }
 
     #[inline]

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::rim::Rim;
 use crate::stats::Cost;
-use crate::support::{Support, VertexId};
+use crate::support::{ShapeId, ShapeKind, Support, VertexId};
 
 /// A solid cylinder around its origin, as parry has it: the axis is y.
 #[derive(Clone, Copy, Debug)]
@@ -39,6 +39,14 @@ impl Support for Cylinder {
         cost.supports += 1;
         let height = self.half_height.copysign(dir.y);
         (self.rim.support(dir, height).0, VertexId::default())
+    }
+
+    #[inline]
+    fn id(&self) -> Option<ShapeId> {
+        Some(ShapeId::described_by(
+            ShapeKind::Cylinder,
+            [self.half_height, self.rim.radius],
+        ))
     }
 
     #[inline]

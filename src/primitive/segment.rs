@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{EdgeId, FaceCorners, FaceId, Polytope, Support, VertexId};
+use crate::support::{
+    EdgeId, FaceCorners, FaceId, Polytope, ShapeId, ShapeKind, Support, VertexId,
+};
 
 /// The core of a capsule: the segment along its axis. The radius is a border, which is subtracted from the
 /// distance of the cores. The ends have the ids 0 and 1.
@@ -62,6 +64,13 @@ impl Support for Segment {
     #[inline]
     fn center(&self) -> DVec3 {
         self.ends[0].midpoint(self.ends[1])
+    }
+
+    #[inline]
+    fn id(&self) -> Option<ShapeId> {
+        let [a, b] = self.ends;
+        let numbers = [a.x, a.y, a.z, b.x, b.y, b.z, self.border_radius];
+        Some(ShapeId::described_by(ShapeKind::Segment, numbers))
     }
 
     /// Includes the border: the core alone may be a point, which has no length.

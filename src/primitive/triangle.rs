@@ -3,7 +3,9 @@
 use glam::DVec3;
 
 use crate::stats::Cost;
-use crate::support::{EdgeId, FaceCorners, FaceId, Polytope, Support, VertexId};
+use crate::support::{
+    EdgeId, FaceCorners, FaceId, Polytope, ShapeId, ShapeKind, Support, VertexId,
+};
 
 /// A triangle. Face 0 is seen counter-clockwise, face 1 is its back.
 #[derive(Clone, Copy, Debug)]
@@ -58,6 +60,13 @@ impl Support for TrianglePolytope {
     #[inline]
     fn center(&self) -> DVec3 {
         self.center
+    }
+
+    #[inline]
+    fn id(&self) -> Option<ShapeId> {
+        let [a, b, c] = self.vertices;
+        let numbers = [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z];
+        Some(ShapeId::described_by(ShapeKind::Triangle, numbers))
     }
 
     #[inline]

@@ -1,5 +1,6 @@
 //! What rapier keeps about a pair of colliders between frames.
 
+use isa_gjk::{Stage, Stats};
 use parry3d::math::{Pose, Real};
 use parry3d::query::details::ContactManifoldsWorkspace;
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
@@ -47,4 +48,12 @@ pub fn cold_manifold(
     let mut memory = Memory::default();
     memory.update(dispatcher, pose, shapes, prediction)?;
     memory.manifolds.pop()
+}
+
+/// How many updates left the contacts where they were, with a proof of the frame or of an earlier one.
+pub fn kept(stats: &Stats) -> u64 {
+    [Stage::Still, Stage::Kept]
+        .map(|stage| stats.answered[stage as usize])
+        .iter()
+        .sum()
 }

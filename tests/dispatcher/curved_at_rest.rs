@@ -1,10 +1,10 @@
 //! Cylinders and cones at rest keep their contacts, are as right as without a past, and cost little.
 
-use isa_gjk::{IsaGjkDispatcher, Stage};
+use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Real, Rotation, Vector};
 use testkit::curved::{Body, Judge};
 use testkit::generate::Rng;
-use testkit::memory::Memory;
+use testkit::memory::{Memory, kept};
 use testkit::pair::{PREDICTION, hull, trajectory};
 use testkit::pose::ExactPose;
 
@@ -81,7 +81,7 @@ fn tremble([ground, body]: [&Body; 2], place: Vector, turn: Rotation, most: f64,
             assert!(faults.are_within(PROMISE), "{what}: {faults:?}");
         }
     }
-    let kept = dispatcher.stats().answered[Stage::Kept as usize];
+    let kept = kept(&dispatcher.stats());
     assert!(kept + 2 >= FRAMES as u64, "{what}: kept {kept} times");
     let mean = supports as f64 / (FRAMES - 1) as f64;
     assert!(mean < most, "{what}: {mean} supports per update");

@@ -37,6 +37,7 @@ mod recording;
 mod round_pairs;
 mod scene_queries;
 mod sizes;
+mod still;
 mod sunk_plates;
 mod touching;
 mod unusual_callers;

@@ -7,11 +7,15 @@ use parry3d::query::Unsupported;
 use super::curved_manifold::CurvedManifold;
 use super::normals::Normals;
 use super::record::AxisFrame;
-use crate::curved::{self, Body, CurvedAnswer, CurvedQuery, CurvedScratch, Patch};
+use super::still::{Before, Still};
+use crate::curved::{self, Body, CurvedAnswer, CurvedQuery, Patch};
 use crate::manifold::Contacts;
 use crate::parry::constraints::{ConstrainedPair, Constraints};
 use crate::parry::order::PairOrder;
 use crate::parry::pair::valid_pose;
+use crate::parry::still_cache::StillPair;
+use crate::parry::workspace::Workspace;
+use crate::pose::RelativePose;
 use crate::query::{Feature, LastContacts, Proximity};
 use crate::stats::{Cost, SharedStats, Stage};
 use crate::support::{Cso, FaceId, VertexId};
@@ -23,6 +27,20 @@ pub(crate) struct CurvedPair<'a, A, B> {
     pub shapes: (&'a A, &'a B),
     pub border_radii: [f64; 2],
     pub order: PairOrder,
+}
+
+impl<'a, A, B> CurvedPair<'a, A, B> {
+    fn cso<'c>(&self, pose: &'c RelativePose) -> Cso<'c, A, B>
+    where
+        'a: 'c,
+    {
+        let (shape_1, shape_2) = self.shapes;
+        Cso {
+            shape_1,
+            shape_2,
+            pose,
+        }
+    }
 }
 
 /// Brings a manifold up to date.
@@ -39,35 +57,38 @@ impl CurvedUpdate<'_> {
     pub fn run<A: Body, B: Body>(
         &mut self,
         pair: &CurvedPair<'_, A, B>,
-        scratch: &mut CurvedScratch,
+        workspace: &mut Workspace,
     ) -> Result<(), Unsupported> {
         let pose = pair.order.pose(valid_pose(self.pos12)?);
-        let cso = Cso {
-            shape_1: pair.shapes.0,
-            shape_2: pair.shapes.1,
-            pose: &pose,
-        };
+        let cso = pair.cso(&pose);
         let borders = pair.border_radii[0] + pair.border_radii[1];
         let touching = MIN_DIRECTED_DISTANCE * (cso.size() + borders);
         let max_distance = f64::from(self.prediction) + touching;
+        let before = self.before(&cso, pair.order);
+        let still = before.as_ref().map(|before| &before.still);
+        if self.is_held(pair, still, max_distance + borders, workspace) {
+            return Ok(());
+        }
+        let read = || self.manifold.last_contacts(pair.order, &pose);
+        let last = before
+            .as_ref()
+            .map_or_else(read, |before| Some(before.last));
         let mut cost = Cost::default();
-        let last = self.manifold.last_contacts(pair.order, &pose);
         let hint = self.manifold.hint(pair.order, AxisFrame::of(&cso), borders);
         let mut query = CurvedQuery {
             cso: &cso,
             border_radii: pair.border_radii,
             max_distance: max_distance + borders,
             last: last.as_ref(),
-            scratch,
+            scratch: &mut workspace.curved,
             cost: &mut cost,
         };
         let (answer, mut stage) = query.run(hint).ok_or(Unsupported)?;
         match answer {
             CurvedAnswer::SpheresApart => self.manifold.forget(),
             CurvedAnswer::Separated(apart) => {
-                let frame = AxisFrame::of(&cso);
-                self.manifold
-                    .set_axis(pair.order, frame, apart.axis, apart.ids);
+                let (frame, order) = (AxisFrame::of(&cso), pair.order);
+                self.manifold.set_axis(order, frame, apart.axis, apart.ids);
             }
             CurvedAnswer::Near {
                 signed_distance,
@@ -84,7 +105,8 @@ impl CurvedUpdate<'_> {
                     max_distance,
                     last: last.as_ref(),
                 };
-                if self.update_contacts(&near, &mut scratch.patch) && stage == Stage::Feature {
+                let is_kept = self.update_contacts(&near, still, workspace);
+                if is_kept && stage == Stage::Feature {
                     stage = Stage::Kept;
                 }
             }
@@ -93,12 +115,53 @@ impl CurvedUpdate<'_> {
         Ok(())
     }
 
+    /// The contacts of the manifold, if they may stay as they are.
+    fn before<A: Body, B: Body>(
+        &mut self,
+        cso: &Cso<'_, A, B>,
+        order: PairOrder,
+    ) -> Option<Before> {
+        let are_free = matches!(self.constraints, [Constraints::None, Constraints::None]);
+        let key = self
+            .manifold
+            .settled(order, cso.pose)
+            .filter(|_| are_free)?;
+        let pair = StillPair::of(cso, self.pos12.rotation, key)?;
+        self.manifold.before(order, cso.pose, pair)
+    }
+
+    /// Measures contacts of a pair at rest anew, if that is proved to be enough.
+    fn is_held<A, B>(
+        &mut self,
+        pair: &CurvedPair<'_, A, B>,
+        still: Option<&Still>,
+        max_distance: f64,
+        workspace: &Workspace,
+    ) -> bool {
+        let proofs = &workspace.still_cache;
+        let is_proved = |still: &&Still| still.is_proved(proofs, max_distance, pair.border_radii);
+        let held = still.filter(is_proved);
+        if let Some(still) = held {
+            self.manifold.hold(still);
+            self.stats.record_free(Stage::Still);
+        }
+        held.is_some()
+    }
+
     /// Returns whether the contacts stayed where they were.
     fn update_contacts<A: Body, B: Body>(
         &mut self,
         near: &Near<'_, '_, A, B>,
-        patch: &mut Patch,
+        still: Option<&Still>,
+        workspace: &mut Workspace,
     ) -> bool {
+        if let Some(still) = still.filter(|still| still.shows(near.least)) {
+            self.manifold.hold(still);
+            let core_distance = near.least + near.border_radii[0] + near.border_radii[1];
+            still.store(&mut workspace.still_cache, core_distance);
+            return true;
+        }
+        let patch = &mut workspace.curved.patch;
         if let [Constraints::None, Constraints::None] = self.constraints {
             return near.update(self.manifold, patch);
         }

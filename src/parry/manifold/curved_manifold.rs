@@ -4,10 +4,12 @@ use glam::{DVec3, Vec3};
 use parry3d::query::ContactManifold;
 
 use super::normals::Normals;
-use super::record::{AxisFrame, KernelManifold};
+use super::record::{AxisFrame, KernelManifold, key_of};
+use super::still::{Before, Still, is_settled};
 use crate::curved::Hint;
 use crate::manifold::Contacts;
 use crate::parry::order::PairOrder;
+use crate::parry::still_cache::StillPair;
 use crate::pose::RelativePose;
 use crate::query::{LastContacts, PairMemory};
 use crate::support::VertexId;
@@ -16,6 +18,15 @@ use crate::support::VertexId;
 /// are compiled once, with this crate, and not in every program that steps a world.
 pub(super) trait CurvedManifold {
     fn last_contacts(&mut self, order: PairOrder, pose: &RelativePose) -> Option<LastContacts>;
+
+    /// The manifold's key, if the shapes hardly turned against its normals.
+    fn settled(&self, order: PairOrder, pose: &RelativePose) -> Option<u64>;
+
+    /// Its contacts then.
+    fn before(&mut self, order: PairOrder, pose: &RelativePose, pair: StillPair) -> Option<Before>;
+
+    /// Leaves the contacts as they are, at their distances now.
+    fn hold(&mut self, still: &Still);
 
     /// The memory of the pair. The cores may be apart although the shapes, with their `borders`, overlap.
     fn hint(&mut self, order: PairOrder, frame: AxisFrame<'_>, borders: f64) -> Hint;
@@ -48,6 +59,20 @@ impl<M, C: Default + Copy> CurvedManifold for ContactManifold<M, C> {
         let mut last = None;
         kernel_manifold(self, order).read_contacts(pose, &mut last);
         last
+    }
+
+    fn settled(&self, order: PairOrder, pose: &RelativePose) -> Option<u64> {
+        is_settled(self, order, pose).then(|| key_of(self))
+    }
+
+    fn before(&mut self, order: PairOrder, pose: &RelativePose, pair: StillPair) -> Option<Before> {
+        let mut before = None;
+        Before::read(&kernel_manifold(self, order), pose, pair, &mut before);
+        before
+    }
+
+    fn hold(&mut self, still: &Still) {
+        kernel_manifold(self, PairOrder::Given).hold(still);
     }
 
     fn hint(&mut self, order: PairOrder, frame: AxisFrame<'_>, borders: f64) -> Hint {

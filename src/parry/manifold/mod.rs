@@ -10,26 +10,32 @@ mod normals;
 mod polytopes;
 mod record;
 mod sink;
+mod still;
 
+use glam::Quat;
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, Unsupported};
 
 use crate::curved::Body;
+use crate::hull::Hull;
 use crate::parry::apart_cache::ApartPair;
 use crate::parry::constraints::Constraints;
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space as plane;
 use crate::parry::instances::{FullWithHull, HullPartner};
 use crate::parry::pair::{Pair, PairVisitor, valid_pose};
+use crate::parry::still_cache::StillPair;
 use crate::parry::workspace::Workspace;
+use crate::pose::RelativePose;
 use crate::query::Query;
 use crate::stats::{Cost, SharedStats, Stage};
-use crate::support::Support;
+use crate::support::{Cso, Support};
 pub(crate) use curved::{CurvedPair, CurvedUpdate};
 use half_space::HalfSpaceContacts;
 use polytopes::PolytopeContacts;
-use record::AxisFrame;
+use record::{AxisFrame, KernelManifold, key_of};
 use sink::ManifoldSink;
+use still::Before;
 
 /// Brings a manifold up to date.
 pub(crate) struct UpdateManifold<'a, M, C> {
@@ -58,8 +64,23 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             self.stats.record_free(apart.stage());
             return Ok(());
         }
+        let pose = pair.pose(valid_pose(self.pos12)?);
+        let cso = pair.cso(&pose);
+        let before = self.before(pair, &pose, |rotation, key| {
+            StillPair::of(&cso, rotation, key)
+        });
+        if self.is_held(pair, before.as_ref(), max_distance, workspace) {
+            return Ok(());
+        }
         let mut cost = Cost::default();
-        let stage = self.query(pair, max_distance, workspace, &mut cost)?;
+        let stage = self.query(
+            pair,
+            &cso,
+            max_distance,
+            before.as_ref(),
+            workspace,
+            &mut cost,
+        )?;
         self.stats.record(stage, &cost);
         Ok(())
     }
@@ -71,23 +92,24 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
     ) -> Result<(), Unsupported> {
         let pose = pair.pose(valid_pose(self.pos12)?);
         let max_distance = pair.core_distance(self.prediction, pair.hull.radius());
-        let mut sink = ManifoldSink {
-            manifold: &mut *self.manifold,
-            pair,
-            frame: AxisFrame::First,
-            contacts: HalfSpaceContacts {
-                hull: pair.hull,
-                pose: &pose,
-                max_distance,
-                scratch: &mut workspace.clip,
-            },
-            last: None,
-            is_kept: false,
-            still_apart: None,
+        let before = self.before(pair, &pose, |rotation, key| {
+            plane::still_pair(pair, &pose, rotation, key)
+        });
+        if self.is_held(pair, before.as_ref(), max_distance, workspace) {
+            return Ok(());
+        }
+        let contacts = HalfSpaceContacts {
+            hull: pair.hull,
+            pose: &pose,
+            max_distance,
+            scratch: &mut workspace.clip,
         };
+        let frame = AxisFrame::First;
+        let mut sink = ManifoldSink::new(self.manifold, pair, frame, contacts, before.as_ref());
         let mut cost = Cost::default();
         let stage = plane::run_into(pair, &pose, max_distance, &mut sink, &mut cost);
         self.stats.record(sink.stage(stage), &cost);
+        sink.store_held(&mut workspace.still_cache);
         Ok(())
     }
 
@@ -101,7 +123,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             border_radii: pair.border_radii,
             order: pair.order,
         };
-        self.curved().run(&pair, &mut workspace.curved)
+        self.curved().run(&pair, workspace)
     }
 }
 
@@ -117,45 +139,79 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
         }
     }
 
+    /// The contacts of the manifold, if they may stay as they are.
+    #[inline]
+    fn before<B>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        pose: &RelativePose,
+        still_pair: impl FnOnce(Quat, u64) -> Option<StillPair>,
+    ) -> Option<Before> {
+        let mut before = None;
+        // Corrected normals need not be those of the query.
+        if matches!(self.constraints, [Constraints::None, Constraints::None])
+            && still::is_settled(self.manifold, pair.order, pose)
+            && let Some(still_pair) = still_pair(self.pos12.rotation, key_of(self.manifold))
+        {
+            let manifold = KernelManifold::new(self.manifold, pair, AxisFrame::First);
+            Before::read(&manifold, pose, still_pair, &mut before);
+        }
+        before
+    }
+
+    /// Measures contacts of a pair at rest anew, if that is proved to be enough.
+    #[inline]
+    fn is_held<B>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        before: Option<&Before>,
+        max_distance: f64,
+        workspace: &Workspace,
+    ) -> bool {
+        let Some(Before { still, .. }) = before else {
+            return false;
+        };
+        let is_proved = still.is_proved(&workspace.still_cache, max_distance, pair.border_radii);
+        if is_proved {
+            KernelManifold::new(self.manifold, pair, AxisFrame::First).hold(still);
+            self.stats.record_free(Stage::Still);
+        }
+        is_proved
+    }
+
     /// Runs the query. If the shapes are still apart along the manifold's axis, stores the proof.
     #[inline]
     fn query<B: HullPartner>(
         &mut self,
         pair: &Pair<'_, B>,
+        cso: &Cso<'_, Hull, B>,
         max_distance: f64,
+        before: Option<&Before>,
         workspace: &mut Workspace,
         cost: &mut Cost,
     ) -> Result<Stage, Unsupported> {
-        let pose = pair.pose(valid_pose(self.pos12)?);
-        let cso = pair.cso(&pose);
-        let frame = AxisFrame::of(&cso);
+        let frame = AxisFrame::of(cso);
         let mut query = Query {
-            cso: &cso,
+            cso,
             max_distance,
             polytope_cache: Some((&mut workspace.polytope_cache, key_of(self.manifold))),
             scratch: &mut workspace.epa,
             cost,
         };
-        let mut sink = ManifoldSink {
-            manifold: &mut *self.manifold,
-            pair,
-            frame,
-            contacts: PolytopeContacts {
-                cso: &cso,
-                max_distance,
-                constraints: self.constraints,
-                pos12: self.pos12,
-                scratch: &mut workspace.clip,
-            },
-            last: None,
-            is_kept: false,
-            still_apart: None,
+        let contacts = PolytopeContacts {
+            cso,
+            max_distance,
+            constraints: self.constraints,
+            pos12: self.pos12,
+            scratch: &mut workspace.clip,
         };
+        let mut sink = ManifoldSink::new(self.manifold, pair, frame, contacts, before);
         let stage = query.run_into(FullWithHull, &mut sink).ok_or(Unsupported)?;
-        let (apart_by, stage) = (sink.still_apart(stage, &cso), sink.stage(stage));
+        let (apart_by, stage) = (sink.still_apart(stage, cso), sink.stage(stage));
+        sink.store_held(&mut workspace.still_cache);
         if let (Some(separation), Some(apart)) = (apart_by, self.apart_pair(pair)) {
             let proofs = &mut workspace.apart_cache;
-            proofs.store(&apart, separation, [cso.size(), frame.lever(&cso)]);
+            proofs.store(&apart, separation, [cso.size(), frame.lever(cso)]);
         }
         Ok(stage)
     }
@@ -171,10 +227,4 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
             pose: self.pos12,
         })
     }
-}
-
-/// The address of the manifold, which is usually the same in the next frame.
-#[inline]
-fn key_of<T>(manifold: &T) -> u64 {
-    (&raw const *manifold).addr() as u64
 }

@@ -184,6 +184,12 @@ impl<'a, M, C> KernelManifold<'a, M, C> {
     }
 }
 
+/// The address of the manifold, which is usually the same in the next frame.
+#[inline]
+pub(super) fn key_of<T>(manifold: &T) -> u64 {
+    (&raw const *manifold).addr() as u64
+}
+
 #[inline]
 fn deepest<C>(contacts: &[TrackedContact<C>]) -> Option<&TrackedContact<C>> {
     let (mut deepest, others) = contacts.split_first()?;

@@ -3,8 +3,10 @@
 use parry3d::query::ContactManifold;
 
 use super::record::{AxisFrame, KernelManifold};
+use super::still::{Before, Still};
 use crate::gjk::SeparatingAxis;
 use crate::parry::pair::Pair;
+use crate::parry::still_cache::StillCache;
 use crate::pose::RelativePose;
 use crate::query::{FlushFaces, LastContacts, PairMemory, Proximity, Sink};
 use crate::stats::Stage;
@@ -39,18 +41,44 @@ pub(super) trait UpdateContacts {
 /// Brings a manifold up to date. It holds only references: most pairs are apart, and copies that only contacts
 /// need would cost them more than the rest.
 pub(super) struct ManifoldSink<'a, 'p, M, C, B, U> {
-    pub manifold: &'a mut ContactManifold<M, C>,
-    pub pair: &'a Pair<'p, B>,
-    pub frame: AxisFrame<'a>,
-    pub contacts: U,
+    manifold: &'a mut ContactManifold<M, C>,
+    pair: &'a Pair<'p, B>,
+    frame: AxisFrame<'a>,
+    contacts: U,
     /// The contacts of the manifold. They are read when they are first needed.
-    pub last: Option<LastContacts>,
-    pub is_kept: bool,
+    last: Option<LastContacts>,
+    /// The same, if they may stay as they are.
+    still: Option<&'a Still>,
+    is_kept: bool,
+    /// The signed distance of the cores, if the contacts are as they were.
+    held_at: Option<f64>,
     /// How far the memory that the manifold has, and keeps, proves the shapes to be apart.
-    pub still_apart: Option<f64>,
+    still_apart: Option<f64>,
 }
 
-impl<M, C, B, U> ManifoldSink<'_, '_, M, C, B, U> {
+impl<'a, 'p, M, C, B, U> ManifoldSink<'a, 'p, M, C, B, U> {
+    /// A sink for a manifold, of which the contacts are known if they may stay as they are.
+    #[inline(always)]
+    pub fn new(
+        manifold: &'a mut ContactManifold<M, C>,
+        pair: &'a Pair<'p, B>,
+        frame: AxisFrame<'a>,
+        contacts: U,
+        before: Option<&'a Before>,
+    ) -> Self {
+        Self {
+            manifold,
+            pair,
+            frame,
+            contacts,
+            last: None,
+            still: before.map(|before| &before.still),
+            is_kept: false,
+            held_at: None,
+            still_apart: None,
+        }
+    }
+
     #[inline(always)]
     fn kernel_manifold(&mut self) -> KernelManifold<'_, M, C> {
         KernelManifold::new(self.manifold, self.pair, self.frame)
@@ -66,6 +94,14 @@ impl<M, C, B, U> ManifoldSink<'_, '_, M, C, B, U> {
         match stage {
             Stage::BoundingSpheres => Some(cso.center().length() - cso.size()),
             _ => self.still_apart,
+        }
+    }
+
+    /// Stores the distance of a pair at rest.
+    #[inline]
+    pub fn store_held(&self, cache: &mut StillCache) {
+        if let (Some(still), Some(distance)) = (self.still, self.held_at) {
+            still.store(cache, distance);
         }
     }
 
@@ -90,6 +126,7 @@ where
     fn memory(&mut self) -> PairMemory {
         let manifold = KernelManifold::new(self.manifold, self.pair, self.frame);
         if !manifold.manifold.points.is_empty()
+            && self.last.is_none()
             && let Some(pose) = self.contacts.pose()
         {
             manifold.read_contacts(pose, &mut self.last);
@@ -129,6 +166,15 @@ where
     #[inline(always)]
     fn near(&mut self, near: &Proximity) {
         let mut manifold = KernelManifold::new(self.manifold, self.pair, self.frame);
+        let [border_1, border_2] = self.pair.border_radii;
+        if let Some(still) = self.still
+            && still.shows(near.signed_distance - (border_1 + border_2))
+        {
+            manifold.hold(still);
+            self.is_kept = true;
+            self.held_at = Some(near.signed_distance);
+            return;
+        }
         let last = self.last.as_ref();
         self.is_kept = self.contacts.update_contacts(&mut manifold, last, near);
     }

@@ -1,0 +1,108 @@
+//! Distances that were certified, which tell how far pairs at rest are apart while they hardly move.
+//!
+//! The signed distance of two shapes changes by no more than their points move relative to each other. The present
+//! pose is compared with that of the certificate, so errors do not add up from frame to frame.
+//!
+//! Whoever asks wants to know whether the distance is still what the contacts show, up to a tolerance. A query would
+//! find the same, and would change nothing but the distances of the contacts. So what is in this cache only saves
+//! time.
+
+use glam::{DVec3, Quat};
+
+use crate::ids::ShapeId;
+use crate::pose::{chord, is_nearly_unit};
+use crate::slot::slot;
+use crate::support::{Cso, Support};
+use crate::tolerance::PROOF_MARGIN;
+
+/// The number of slots. They take 256 KiB, allocated with the first distance.
+const SLOTS: usize = 1 << SLOT_BITS;
+const SLOT_BITS: u32 = 12;
+
+/// Distances of many pairs. A key gives the slot; the shapes tell whether the distance in it is that of the pair.
+#[derive(Default)]
+pub(crate) struct StillCache(Box<[Certified]>);
+
+/// Fills one cache line.
+#[derive(Clone, Copy, Default)]
+#[repr(C, align(64))]
+struct Certified {
+    rotation: Quat,
+    place: DVec3,
+    distance: f64,
+    shapes: [Option<ShapeId>; 2],
+}
+
+/// The pair of a distance.
+pub(crate) struct StillPair {
+    pub key: u64,
+    pub shapes: [ShapeId; 2],
+    pub rotation: Quat,
+    /// The centre of the smaller shape in the frame of the larger.
+    pub place: DVec3,
+    /// The radius of the smaller shape.
+    pub radius: f64,
+}
+
+impl StillPair {
+    /// Of two shapes with ids.
+    #[inline]
+    pub fn of<A: Support, B: Support>(
+        cso: &Cso<'_, A, B>,
+        rotation: Quat,
+        key: u64,
+    ) -> Option<Self> {
+        let (first, second, pose) = (cso.shape_1, cso.shape_2, cso.pose);
+        let (place, radius) = if second.radius() > first.radius() {
+            (pose.point_to_2(first.center()), first.radius())
+        } else {
+            (pose.point_to_1(second.center()), second.radius())
+        };
+        Some(Self {
+            key,
+            shapes: [first.id()?, second.id()?],
+            rotation,
+            place,
+            radius,
+        })
+    }
+}
+
+impl StillCache {
+    /// Whether the shapes of a pair certainly have this signed distance, up to a tolerance.
+    #[inline]
+    pub fn proves(&self, pair: &StillPair, distance: f64, tolerance: f64) -> bool {
+        let Some(known) = self.0.get(slot(pair.key, SLOT_BITS)) else {
+            return false;
+        };
+        known.shapes == pair.shapes.map(Some)
+            && is_nearly_unit(pair.rotation)
+            && (known.distance - distance).abs() + known.way_to(pair) <= tolerance
+    }
+
+    /// Stores a signed distance that was certified at the present pose.
+    #[inline]
+    pub fn store(&mut self, pair: &StillPair, distance: f64) {
+        if !is_nearly_unit(pair.rotation) {
+            return;
+        }
+        if self.0.is_empty() {
+            self.0 = vec![Certified::default(); SLOTS].into();
+        }
+        self.0[slot(pair.key, SLOT_BITS)] = Certified {
+            rotation: pair.rotation,
+            place: pair.place,
+            distance,
+            shapes: pair.shapes.map(Some),
+        };
+    }
+}
+
+impl Certified {
+    /// How far points of the smaller shape have moved since, at most, seen from the larger one.
+    #[inline]
+    fn way_to(&self, pair: &StillPair) -> f64 {
+        let turned = chord(pair.rotation, self.rotation) / PROOF_MARGIN;
+        self.place.distance(pair.place) + turned * pair.radius
+    }
+}
