@@ -66,7 +66,8 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         }
         let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
-        let before = self.before(pair, &pose, |rotation, key| {
+        let mut before = None;
+        self.read_before(pair, &pose, &mut before, |rotation, key| {
             StillPair::of(&cso, rotation, key)
         });
         if self.is_held(pair, before.as_ref(), max_distance, workspace) {
@@ -92,7 +93,8 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
     ) -> Result<(), Unsupported> {
         let pose = pair.pose(valid_pose(self.pos12)?);
         let max_distance = pair.core_distance(self.prediction, pair.hull.radius());
-        let before = self.before(pair, &pose, |rotation, key| {
+        let mut before = None;
+        self.read_before(pair, &pose, &mut before, |rotation, key| {
             plane::still_pair(pair, &pose, rotation, key)
         });
         if self.is_held(pair, before.as_ref(), max_distance, workspace) {
@@ -139,24 +141,24 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
         }
     }
 
-    /// The contacts of the manifold, if they may stay as they are.
+    /// Reads the contacts of the manifold, if they may stay as they are. (They are read to where they stay: most pairs
+    /// have none, and would copy a lot.)
     #[inline]
-    fn before<B>(
+    fn read_before<B>(
         &mut self,
         pair: &Pair<'_, B>,
         pose: &RelativePose,
+        before: &mut Option<Before>,
         still_pair: impl FnOnce(Quat, u64) -> Option<StillPair>,
-    ) -> Option<Before> {
-        let mut before = None;
+    ) {
         // Corrected normals need not be those of the query.
         if matches!(self.constraints, [Constraints::None, Constraints::None])
             && still::is_settled(self.manifold, pair.order, pose)
             && let Some(still_pair) = still_pair(self.pos12.rotation, key_of(self.manifold))
         {
             let manifold = KernelManifold::new(self.manifold, pair, AxisFrame::First);
-            Before::read(&manifold, pose, still_pair, &mut before);
+            Before::read(&manifold, pose, still_pair, before);
         }
-        before
     }
 
     /// Measures contacts of a pair at rest anew, if that is proved to be enough.
