@@ -141,8 +141,8 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
         }
     }
 
-    /// Reads the contacts of the manifold, if they may stay as they are. (They are read to where they stay: most pairs
-    /// have none, and would copy a lot.)
+    /// Reads the contacts of the manifold, if they may stay as they are. They are written to `before`: a return value
+    /// would be copied even where there are none.
     #[inline]
     fn read_before<B>(
         &mut self,
