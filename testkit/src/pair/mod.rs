@@ -6,6 +6,6 @@ mod trajectory;
 mod update;
 
 pub use hull::hull;
-pub use resting::resting;
+pub use resting::{resting, trembling};
 pub use trajectory::{FRAMES, GAPS, PREDICTION, VERTICES, trajectory};
 pub use update::{Manifolds, update};

@@ -1,4 +1,4 @@
-//! A prism that lies still on another one.
+//! Bodies that lie still on another one.
 
 use parry3d::math::{Pose, Rotation, Vector};
 use parry3d::shape::SharedShape;
@@ -6,15 +6,20 @@ use parry3d::shape::SharedShape;
 use super::FRAMES;
 use crate::scenes::hulls;
 
-/// Two prisms with so many sides, and poses of the second in the frame of the first: it lies on it, 2 mm deep,
-/// a little turned and shifted, and trembles by a thousandth of a millimetre.
+/// Two prisms with so many sides, and poses of the second in the frame of the first: it lies on it, 2 mm deep.
 pub fn resting(sides: u32) -> ([SharedShape; 2], Vec<Pose>) {
     let shapes =
         [0.5, 0.4].map(|height| hulls::prism(sides, hulls::RADIUS, height).expect("a prism"));
-    let trembling = |frame: usize| {
+    (shapes, trembling(0.898))
+}
+
+/// Poses of a body so high above the middle of another one, a little turned and shifted: it trembles by a
+/// thousandth of a millimetre.
+pub fn trembling(height: f32) -> Vec<Pose> {
+    let pose = |frame: usize| {
         let [a, b] = [0.7, 1.1].map(|rate| 1e-6 * (rate * frame as f32).sin());
         let turn = Rotation::from_scaled_axis(Vector::new(a, 0.3, b));
-        Pose::from_parts(Vector::new(0.1 + b, 0.898 + a, 0.05), turn)
+        Pose::from_parts(Vector::new(0.1 + b, height + a, 0.05), turn)
     };
-    (shapes, (0..FRAMES).map(trembling).collect())
+    (0..FRAMES).map(pose).collect()
 }

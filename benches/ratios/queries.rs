@@ -1,69 +1,20 @@
-//! rapier's default dispatcher and ours, in turn: whatever else the machine does meanwhile, it does to both.
-//! `cargo bench --bench ratios` prints medians over the turns, as tables.
+//! Scene queries, which have no memory.
 
 use std::hint::black_box;
-use std::time::Instant;
 
 use isa_gjk::IsaGjkDispatcher;
-use isa_gjk::PreparedShapes;
 use oorandom::Rand32;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{
-    DefaultQueryDispatcher, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
-    ShapeCastOptions,
+    DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastOptions,
 };
 use parry3d::shape::SharedShape;
-use testkit::pair::{FRAMES, GAPS, Manifolds, VERTICES, hull, trajectory, update};
+use testkit::pair::hull;
 
-const TURNS: usize = 101;
+use crate::{in_turn, vector};
 
 /// Random poses of a pair: apart, touching and overlapping.
 const POSES: usize = 64;
-
-fn main() {
-    warm_manifolds();
-    scene_queries();
-}
-
-/// One pair that moves by 2 mm and turns by 0.5° from update to update.
-fn warm_manifolds() {
-    let plain = |shape: &SharedShape| shape.clone();
-    let prepared = |shape: &SharedShape| PreparedShapes::default().prepare(shape);
-    for (what, given) in [("plain hulls", plain as Given), ("`HullShape`s", prepared)] {
-        println!("### Warm manifold updates, to ours {what}: ns, default → ours, ratio\n");
-        println!("| vertices | separated | touching | shallow | deep |\n|---|---|---|---|---|");
-        for vertices in VERTICES {
-            let shapes = [hull(vertices, 1), hull(vertices, 2)];
-            let our_shapes = shapes.each_ref().map(given);
-            let row = GAPS.map(|(_, gap)| {
-                let poses = trajectory(&shapes, gap, 1.0);
-                let ours = IsaGjkDispatcher::default();
-                in_turn(
-                    FRAMES,
-                    || update_along(&DefaultQueryDispatcher, &shapes, &poses),
-                    || update_along(&ours, &our_shapes, &poses),
-                )
-            });
-            println!("| {vertices} | {} |", row.join(" | "));
-        }
-        println!();
-    }
-}
-
-/// The shape that our dispatcher is given for a plain hull.
-type Given = fn(&SharedShape) -> SharedShape;
-
-fn update_along(
-    dispatcher: &impl PersistentQueryDispatcher,
-    shapes: &[SharedShape; 2],
-    poses: &[Pose],
-) {
-    let mut manifolds = Manifolds::default();
-    for pose in poses {
-        update(dispatcher, shapes, pose, &mut manifolds);
-        black_box(&manifolds);
-    }
-}
 
 type Ask = fn(&dyn QueryDispatcher, &Pose, [&SharedShape; 2]);
 
@@ -95,7 +46,7 @@ const QUERIES: [(&str, Ask); 6] = [
     }),
 ];
 
-fn scene_queries() {
+pub fn scene() {
     let random = &mut Rand32::new(7);
     let poses: [Pose; POSES] = [(); POSES].map(|()| {
         let place = vector(random) * 2.5;
@@ -131,26 +82,4 @@ fn scene_queries() {
             println!("| `{query}` | {} |", row.join(" | "));
         }
     }
-}
-
-fn vector(random: &mut Rand32) -> Vector {
-    let mut coordinate = || 2.0 * random.rand_float() - 1.0;
-    Vector::new(coordinate(), coordinate(), coordinate())
-}
-
-/// Nanoseconds of each call and the ratio, medians, when both make so many calls in turn.
-fn in_turn(calls: usize, default: impl Fn(), ours: impl Fn()) -> String {
-    let time = |work: &dyn Fn()| {
-        let start = Instant::now();
-        work();
-        start.elapsed().as_nanos() as f64 / calls as f64
-    };
-    let turns: Vec<[f64; 2]> = (0..TURNS).map(|_| [time(&default), time(&ours)]).collect();
-    let median = |of: fn(&[f64; 2]) -> f64| {
-        let mut values: Vec<f64> = turns.iter().map(of).collect();
-        values.sort_by(f64::total_cmp);
-        values[TURNS / 2]
-    };
-    let [default, ours, ratio] = [median(|t| t[0]), median(|t| t[1]), median(|t| t[0] / t[1])];
-    format!("{default:.0} → {ours:.0}, {ratio:.1}")
 }
