@@ -15,10 +15,14 @@ use std::error::Error;
 use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
+use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
+use isa_gjk::IsaGjkDispatcher;
+use isa_gjk::recording::Recorder;
 
 use curved::Curved;
 use options::Options;
@@ -48,9 +52,14 @@ fn compare(options: &Options) -> Result<(), Box<dyn Error>> {
     let length = options.run_length();
     // Before the run, so that a wrong path does not cost it.
     let outputs = Outputs::create(options)?;
+    let recorder = recorder(options)?;
+    let dispatcher = match &recorder {
+        Some(recorder) => IsaGjkDispatcher::default().with_recorder(recorder.clone()),
+        None => IsaGjkDispatcher::default(),
+    };
     let progress = progress_bar(options, length.steps() * u64::from(options.repeat));
     let runs = (0..options.repeat)
-        .map(|_| measure::run(options.scene, &params, length, &progress))
+        .map(|_| measure::run(options.scene, &params, &dispatcher, length, &progress))
         .collect::<Result<Vec<_>, _>>()?;
     progress.finish_and_clear();
 
@@ -65,10 +74,22 @@ fn compare(options: &Options) -> Result<(), Box<dyn Error>> {
         chart::frames(path, &report.title(), &runs)?;
     }
     print(&report)?;
+    if let Some(summary) = recorder.map(|recorder| recorder.summary()) {
+        let wrong = summary.recorded + summary.repeated;
+        print(&format!("{wrong} of {} updates look wrong\n", summary.seen))?;
+    }
     match report.failed_check() {
         true => Err("a manifold is off by more than the limit: see the table".into()),
         false => Ok(()),
     }
+}
+
+fn recorder(options: &Options) -> Result<Option<Arc<Recorder>>, String> {
+    let create = |path: &PathBuf| match Recorder::create(path) {
+        Ok(recorder) => Ok(Arc::new(recorder)),
+        Err(error) => Err(format!("cannot write {}: {error}", path.display())),
+    };
+    options.record.as_ref().map(create).transpose()
 }
 
 fn sweep(options: &Options) -> Result<(), Box<dyn Error>> {

@@ -88,14 +88,14 @@ pub struct Run {
     pub verified: Option<Verified>,
 }
 
-/// Builds both worlds and steps them, block by block in turn.
+/// Builds both worlds, ours with this dispatcher, and steps them, block by block in turn.
 pub fn run(
     scene: Scene,
     params: &SceneParams,
+    dispatcher: &IsaGjkDispatcher,
     length: RunLength,
     progress: &ProgressBar,
 ) -> Result<Run, String> {
-    let dispatcher = IsaGjkDispatcher::default();
     let mut default = Recorder::new(scenes::build(scene, params, None)?);
     let mut ours = Recorder::new(scenes::build(scene, params, Some(dispatcher.clone()))?);
 

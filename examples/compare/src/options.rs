@@ -139,6 +139,11 @@ pub struct Options {
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub verify: u32,
 
+    /// Write down pairs of the world of isa-gjk whose contacts look wrong, in a file for `inspect` and
+    /// `replay`. Each update is checked, so the times mean nothing
+    #[arg(long, conflicts_with_all = ["sweep", "until_asleep", "curved"])]
+    pub record: Option<PathBuf>,
+
     /// Show no progress bar
     #[arg(long)]
     pub quiet: bool,

@@ -4,6 +4,7 @@ use std::fmt;
 use std::io::{self, BufWriter, Write};
 
 use indicatif::ProgressBar;
+use isa_gjk::IsaGjkDispatcher;
 use serde::Serialize;
 
 use crate::measure::{self, Run, Side};
@@ -67,6 +68,7 @@ impl Sweep {
             ));
         }
         let length = options.run_length();
+        let dispatcher = IsaGjkDispatcher::default();
         let mut rows = Vec::new();
         for recycling in [true, false] {
             for vertices in VERTICES {
@@ -77,7 +79,7 @@ impl Sweep {
                         ..params(vertices)?
                     };
                     (0..options.repeat)
-                        .map(|_| measure::run(scene, &params, length, progress))
+                        .map(|_| measure::run(scene, &params, &dispatcher, length, progress))
                         .collect::<Result<Vec<_>, _>>()
                 };
                 rows.push(Row::new(

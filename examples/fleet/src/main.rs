@@ -109,6 +109,11 @@ impl Run {
     fn run(&self) -> Result<(), Box<dyn Error>> {
         let dispatcher = (!self.default_dispatcher).then(IsaGjkDispatcher::default);
         let bin = Bin::new(self.bodies, dispatcher)?;
+        // Before the run, so that a wrong path does not cost it.
+        let create = |path: &PathBuf| {
+            File::create(path).map_err(|error| format!("cannot write {}: {error}", path.display()))
+        };
+        let out = self.out.as_ref().map(create).transpose()?;
         let worlds: Vec<u32> = self.shard.worlds(self.worlds).collect();
         let progress = self.progress(worlds.len());
         let start = Instant::now();
@@ -119,9 +124,7 @@ impl Run {
             .collect();
         let seconds = start.elapsed().as_secs_f64();
 
-        if let Some(path) = &self.out {
-            let file = File::create(path)
-                .map_err(|error| format!("cannot write {}: {error}", path.display()))?;
+        if let Some(file) = out {
             write_all(&records, BufWriter::new(file))?;
         }
         let steps: u64 = records.iter().map(|record| u64::from(record.steps)).sum();
@@ -137,7 +140,7 @@ impl Run {
     /// One world from its start to its end.
     fn step(&self, bin: &Bin, world: u32) -> Record {
         let start = Instant::now();
-        let mut physics = bin.fill(self.seed + u64::from(world));
+        let mut physics = bin.fill(self.seed.wrapping_add(u64::from(world)));
         for _ in 0..self.steps {
             physics.step();
         }

@@ -9,6 +9,7 @@ use std::error::Error;
 use std::f32::consts::{FRAC_PI_2, PI};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum, value_parser};
 use glam::Vec3;
@@ -53,7 +54,7 @@ struct Options {
     seed: u64,
 
     /// Contacts reach this far, in metres; the hulls have a radius of half a metre
-    #[arg(long, default_value_t = 0.02)]
+    #[arg(long, default_value_t = 0.02, value_parser = finite)]
     prediction: f64,
 
     /// Magnifies the contact, or the gap
@@ -69,7 +70,7 @@ struct Options {
     number: usize,
 
     /// Radians by which the picture of the recorded pair is turned: at 0 the normal points to the right
-    #[arg(long, default_value_t = YAW, requires = "pair")]
+    #[arg(long, default_value_t = YAW, value_parser = finite, requires = "pair")]
     yaw: f64,
 
     /// Print a test of the recorded pair, and draw nothing
@@ -89,8 +90,17 @@ enum Kind {
     Prism,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let options = Options::parse();
+fn main() -> ExitCode {
+    match draw(&Options::parse()) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn draw(options: &Options) -> Result<(), Box<dyn Error>> {
     if let Some(path) = &options.pair {
         let recorded = Recorded::open(path, options.number)?;
         if options.test {
@@ -124,10 +134,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut memory = PairMemory::None;
     for frame in 0..options.frame {
         let pose = place(attitude, frame, options.frames);
-        memory = ask([first, second], &pose, memory, &options)?.learned();
+        memory = ask([first, second], &pose, memory, options)?.learned();
     }
     let pose = place(attitude, options.frame, options.frames);
-    let snapshot = ask([first, second], &pose, memory, &options)?;
+    let snapshot = ask([first, second], &pose, memory, options)?;
     println!("{}", snapshot.summary().join("\n"));
     write(&options.out, &snapshot.draw(options.zoom))
 }
@@ -176,9 +186,14 @@ fn ask<'a>(
     })
 }
 
+fn finite(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| "give a number".to_owned())
+}
+
 fn at_least_one(text: &str) -> Result<f64, String> {
-    let number: f64 = text.parse().map_err(|_| "give a number".to_owned())?;
-    (number >= 1.0 && number.is_finite())
+    let number = finite(text)?;
+    (number >= 1.0)
         .then_some(number)
         .ok_or_else(|| "give 1 or more".to_owned())
 }

@@ -10,6 +10,7 @@ mod tape;
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use clap::{Parser, ValueEnum, value_parser};
 use isa_gjk::IsaGjkDispatcher;
@@ -49,7 +50,7 @@ struct Options {
     real: bool,
 
     /// Seconds to record
-    #[arg(long, default_value_t = 10.0)]
+    #[arg(long, default_value_t = 10.0, value_parser = positive)]
     seconds: f64,
 
     /// Steps from one recorded frame to the next; the player moves evenly between them
@@ -79,8 +80,8 @@ struct Options {
     film: Option<PathBuf>,
 
     /// Metres from the left to the right of the picture
-    #[arg(long, default_value_t = 8.0, requires = "film")]
-    extent: f32,
+    #[arg(long, default_value_t = 8.0, value_parser = positive, requires = "film")]
+    extent: f64,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -141,13 +142,28 @@ impl Options {
     }
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+fn main() -> ExitCode {
     let options = Options::parse();
     let params = options.params();
-    match &options.film {
+    let written = match &options.film {
         Some(out) => write_film(&options, &params, out),
         None => write_page(&options, &params),
+    };
+    match written {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
     }
+}
+
+fn positive(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| "give a number".to_owned())?;
+    let is_positive = number.is_finite() && number > 0.0;
+    is_positive
+        .then_some(number)
+        .ok_or_else(|| "give a number above zero".to_owned())
 }
 
 fn write_page(options: &Options, params: &SceneParams) -> Result<(), Box<dyn Error>> {
@@ -186,7 +202,7 @@ fn write_film(options: &Options, params: &SceneParams, out: &Path) -> Result<(),
     let mut reels = Vec::new();
     for (title, dispatcher) in both {
         let mut world = scenes::build(options.scene, params, dispatcher)?;
-        let mut reel = Reel::new(title, options.extent);
+        let mut reel = Reel::new(title, options.extent as f32);
         options.run(&mut world, |world| reel.record(world));
         reels.push(reel);
     }
