@@ -1,9 +1,9 @@
 //! A coherent narrow phase for the convex hulls of [rapier](https://rapier.rs) worlds.
 //!
-//! [`IsaGjkDispatcher`] answers pairs with a convex hull, starting from the previous frame, and passes every
-//! other pair on to parry's own dispatcher. It is installed in one line. Plain `SharedShape::convex_hull`
-//! colliders need no change. A [`HullShape`] contains its prepared hull, so that no cache is searched for it,
-//! and computes its own bounding box.
+//! [`IsaGjkDispatcher`] answers pairs with a convex hull, a cylinder or a cone, starting from the previous frame,
+//! and passes the contacts of other pairs on to parry's own dispatcher, or to one of yours. It is installed in
+//! one line. Plain `SharedShape::convex_hull` colliders need no change. A [`HullShape`] contains its prepared
+//! hull, so that no cache is searched for it, and computes its own bounding box.
 //!
 //! # Quick start
 //!
@@ -166,6 +166,6 @@ struct Tips;
 #[doc = include_str!("../docs/reporting.md")]
 struct Reporting;
 
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "bevy_app"))]
 #[doc = include_str!("../docs/bevy.md")]
 struct BevyPage;

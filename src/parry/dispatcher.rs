@@ -19,8 +19,8 @@ use crate::parry::update::Updater;
 use crate::parry::workspace;
 use crate::stats::{SharedStats, Stats};
 
-/// A query dispatcher that answers pairs with a convex hull, a cylinder or a cone itself and passes every
-/// other pair on to parry's own. It also finds the parts of compounds that meet, whatever they are.
+/// A query dispatcher that answers pairs with a convex hull, a cylinder or a cone itself, and two capsules. It
+/// also finds the parts of compounds that meet, whatever they are.
 ///
 /// Pass it to `NarrowPhase::with_query_dispatcher`, or to `set_query_dispatcher` of a running world. Clones
 /// share their statistics.
@@ -43,8 +43,7 @@ impl Default for IsaGjkDispatcher {
 
 impl<F> IsaGjkDispatcher<F> {
     /// A dispatcher that passes all pairs that it does not answer itself to `fallback`: a dispatcher of your
-    /// own, or several in parry's `QueryDispatcherChain`. [`Stats::left_to_fallback`] counts the pairs with a
-    /// hull among them.
+    /// own, or several in parry's `QueryDispatcherChain`. [`Stats::left_to_fallback`] counts them, by reason.
     ///
     /// The fallback gets whole pairs, and parts of the composite shapes that this dispatcher takes apart.
     ///

@@ -2,6 +2,7 @@
 //! test is run, and habits that are to go do not spread.
 
 mod imports;
+mod links;
 mod names;
 mod ratchets;
 
