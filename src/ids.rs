@@ -4,6 +4,8 @@ use std::fmt;
 use std::num::NonZeroU64;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::mix::GOLDEN;
+
 /// Defines an id, which is a number of 30 bits at most.
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
@@ -77,9 +79,6 @@ pub struct ShapeId(NonZeroU64);
 /// The highest bit. It is set in the ids of shapes that a few numbers describe.
 const DESCRIBED: u64 = 1 << 63;
 
-/// Odd, with about as many ones as zeros. Both halves of a product by it depend on all bits of the other factor.
-const MIXER: u64 = 0x9e37_79b9_7f4a_7c15;
-
 /// The kind of a shape that a few numbers describe.
 #[derive(Clone, Copy)]
 pub(crate) enum ShapeKind {
@@ -98,7 +97,7 @@ impl ShapeId {
     #[inline]
     pub(crate) fn described_by<const N: usize>(kind: ShapeKind, numbers: [f64; N]) -> Self {
         let mix = |hash: u64, number: f64| {
-            let product = u128::from(hash ^ number.to_bits()) * u128::from(MIXER);
+            let product = u128::from(hash ^ number.to_bits()) * u128::from(GOLDEN);
             (product >> 64) as u64 ^ product as u64
         };
         let hash = numbers.into_iter().fold(kind as u64, mix);

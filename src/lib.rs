@@ -84,6 +84,7 @@ mod hull;
 mod ids;
 mod manifold;
 mod map_pair;
+mod mix;
 mod parry;
 mod pose;
 mod primitive;

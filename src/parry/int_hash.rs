@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
 
+use crate::mix::mix;
+
 pub(crate) type IntMap<K, V> = HashMap<K, V, BuildHasherDefault<IntHasher>>;
 
 /// One multiplication spreads integers over the buckets.
@@ -21,8 +23,7 @@ impl Hasher for IntHasher {
     }
 
     fn write_u64(&mut self, value: u64) {
-        let mixed = (self.0 ^ value).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        self.0 = mixed ^ mixed >> 32;
+        self.0 = mix(self.0 ^ value);
     }
 
     fn write_usize(&mut self, value: usize) {

@@ -4,18 +4,18 @@ use glam::Vec3;
 use parry3d::shape::ConvexPolyhedron;
 
 use crate::at::At;
+use crate::mix::mix;
 
 /// A hash of the points of a polyhedron. Polyhedra with the same points seldom have other edges.
 pub(crate) fn fingerprint(polyhedron: &ConvexPolyhedron) -> u64 {
-    let mix = |hash: u64, words: [u32; 2]| {
+    let add = |hash: u64, words: [u32; 2]| {
         let [low, high] = words.map(u64::from);
-        let mixed = (hash ^ low ^ high << 32).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        mixed ^ mixed >> 32
+        mix(hash ^ low ^ high << 32)
     };
     let coordinates = bytemuck::cast_slice::<Vec3, u32>(polyhedron.points());
     let (pairs, rest) = coordinates.as_chunks();
     let last = rest.first().map(|&bits| [bits, 0]);
-    pairs.iter().copied().chain(last).fold(0, mix)
+    pairs.iter().copied().chain(last).fold(0, add)
 }
 
 /// The edges that a hull depends on besides its points: their ids and their ends.

@@ -7,6 +7,7 @@ use crate::at::At;
 use crate::hull::HullError;
 use crate::hull::climb::{self, HillClimb};
 use crate::hull::faces::Faces;
+use crate::mix::mix;
 use crate::support::FaceId;
 use crate::tolerance::{BOWL, MAX_INWARD_HEIGHT, MIN_EXTENT};
 
@@ -53,10 +54,10 @@ const NOTHING: u32 = u32::MAX;
 
 /// Equal for equal points. Adding zero turns -0 into 0.
 fn hash(point: Vec3) -> usize {
-    let [x, y, z] = (point + Vec3::ZERO).to_array().map(f32::to_bits);
-    let mixed = (u64::from(x) << 32 | u64::from(y)).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-    let mixed = (mixed ^ mixed >> 32 ^ u64::from(z)).wrapping_mul(0xD6E8_FEB8_6659_FD93);
-    (mixed >> 32) as usize
+    let [x, y, z] = (point + Vec3::ZERO)
+        .to_array()
+        .map(|x| u64::from(x.to_bits()));
+    mix(mix(x << 32 | y) ^ z) as usize
 }
 
 /// The centre of volume, and the largest distance of a vertex from it.
