@@ -92,7 +92,7 @@ pub mod query;
 mod ray_cast;
 mod simd;
 mod simplex;
-mod slot;
+mod slots;
 mod stats;
 mod support;
 mod tolerance;

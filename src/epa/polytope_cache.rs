@@ -3,12 +3,11 @@
 use super::cached_polytope::CachedPolytope;
 use super::clearance::KnownDepth;
 use super::polytope::EpaScratch;
-use crate::slot::slot;
+use crate::slots::Slots;
 use crate::stats::Cost;
 use crate::support::{Cso, Polytope, Support};
 
-/// How many pairs the cache holds if no two share a slot.
-const SLOTS: usize = 1 << SLOT_BITS;
+/// The cache holds 2,048 pairs if no two share a slot.
 const SLOT_BITS: u32 = 11;
 
 /// A new entry, or one that has just proved a depth, survives this many attempts to replace it. With more pairs
@@ -19,8 +18,8 @@ const PROTECTED_MISSES: u8 = 16;
 /// be any number that stays the same from frame to frame.
 ///
 /// A lost entry only costs time. A key that now stands for another pair does no harm.
-#[derive(Clone, Debug)]
-pub struct PolytopeCache(Box<[CacheSlot]>);
+#[derive(Clone, Debug, Default)]
+pub struct PolytopeCache(Slots<CacheSlot, SLOT_BITS>);
 
 #[derive(Clone, Debug, Default)]
 struct CacheSlot {
@@ -28,12 +27,6 @@ struct CacheSlot {
     /// How many more attempts to replace this entry are refused.
     protected_misses: u8,
     polytope: Option<Box<CachedPolytope>>,
-}
-
-impl Default for PolytopeCache {
-    fn default() -> Self {
-        Self(vec![CacheSlot::default(); SLOTS].into())
-    }
 }
 
 impl PolytopeCache {
@@ -47,15 +40,15 @@ impl PolytopeCache {
         scratch: &mut EpaScratch,
         cost: &mut Cost,
     ) -> bool {
-        let slot = self.slot(key);
-        match &mut slot.polytope {
-            Some(polytope) if slot.key == key => {
-                let proved = polytope.proves_depth(cso, known, scratch, cost);
-                slot.protected_misses = if proved { PROTECTED_MISSES } else { 0 };
-                proved
-            }
-            _ => false,
-        }
+        let Some(slot) = self.0.get_mut(key).filter(|slot| slot.key == key) else {
+            return false;
+        };
+        let Some(polytope) = &mut slot.polytope else {
+            return false;
+        };
+        let proved = polytope.proves_depth(cso, known, scratch, cost);
+        slot.protected_misses = if proved { PROTECTED_MISSES } else { 0 };
+        proved
     }
 
     /// Keeps the polytope of the last expansion for this pair.
@@ -65,7 +58,7 @@ impl PolytopeCache {
         cso: &Cso<'_, A, B>,
         scratch: &EpaScratch,
     ) {
-        let slot = self.slot(key);
+        let slot = self.0.get_or_allocate(key);
         if slot.key != key {
             if slot.protected_misses > 0 {
                 slot.protected_misses -= 1;
@@ -74,9 +67,5 @@ impl PolytopeCache {
             (slot.key, slot.protected_misses) = (key, PROTECTED_MISSES);
         }
         slot.polytope.get_or_insert_default().store(cso, scratch);
-    }
-
-    fn slot(&mut self, key: u64) -> &mut CacheSlot {
-        &mut self.0[slot(key, SLOT_BITS)]
     }
 }

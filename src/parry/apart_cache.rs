@@ -13,17 +13,16 @@ use parry3d::math::Pose;
 
 use crate::ids::ShapeId;
 use crate::pose::{chord, is_nearly_unit};
-use crate::slot::slot;
+use crate::slots::Slots;
 use crate::stats::Stage;
 use crate::tolerance::PROOF_MARGIN;
 
-/// The number of slots. They take 256 KiB, allocated with the first proof.
-const SLOTS: usize = 1 << SLOT_BITS;
+/// 4,096 slots, which take 256 KiB.
 const SLOT_BITS: u32 = 12;
 
 /// Proofs of many pairs. A key gives the slot; shapes and axis tell whether the proof in it is that of the pair.
 #[derive(Default)]
-pub(crate) struct ApartCache(Box<[Proof]>);
+pub(crate) struct ApartCache(Slots<Proof, SLOT_BITS>);
 
 /// Fills one cache line.
 #[derive(Clone, Copy, Default)]
@@ -64,7 +63,7 @@ impl ApartCache {
     /// Whether a pair is certainly farther apart than `max_distance`.
     #[inline]
     pub fn proves(&self, pair: &ApartPair<'_>, max_distance: f64) -> bool {
-        let Some(proof) = self.0.get(slot(pair.key, SLOT_BITS)) else {
+        let Some(proof) = self.0.get(pair.key) else {
             return false;
         };
         proof.shapes == pair.shapes.map(Some)
@@ -79,11 +78,8 @@ impl ApartCache {
         if !is_nearly_unit(pair.pose.rotation) {
             return;
         }
-        if self.0.is_empty() {
-            self.0 = vec![Proof::default(); SLOTS].into();
-        }
         let margin = (1.0 - PROOF_MARGIN) * (size + separation.abs());
-        self.0[slot(pair.key, SLOT_BITS)] = Proof {
+        *self.0.get_or_allocate(pair.key) = Proof {
             rotation: pair.pose.rotation,
             shapes: pair.shapes.map(Some),
             translation: pair.pose.translation,

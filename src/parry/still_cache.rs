@@ -11,17 +11,16 @@ use glam::{DVec3, Quat};
 
 use crate::ids::ShapeId;
 use crate::pose::{chord, is_nearly_unit};
-use crate::slot::slot;
+use crate::slots::Slots;
 use crate::support::{Cso, Support};
 use crate::tolerance::PROOF_MARGIN;
 
-/// The number of slots. They take 256 KiB, allocated with the first distance.
-const SLOTS: usize = 1 << SLOT_BITS;
+/// 4,096 slots, which take 256 KiB.
 const SLOT_BITS: u32 = 12;
 
 /// Distances of many pairs. A key gives the slot; the shapes tell whether the distance in it is that of the pair.
 #[derive(Default)]
-pub(crate) struct StillCache(Box<[Certified]>);
+pub(crate) struct StillCache(Slots<Certified, SLOT_BITS>);
 
 /// Fills one cache line.
 #[derive(Clone, Copy, Default)]
@@ -72,7 +71,7 @@ impl StillCache {
     /// Whether the shapes of a pair certainly have this signed distance, up to a tolerance.
     #[inline]
     pub fn proves(&self, pair: &StillPair, distance: f64, tolerance: f64) -> bool {
-        let Some(known) = self.0.get(slot(pair.key, SLOT_BITS)) else {
+        let Some(known) = self.0.get(pair.key) else {
             return false;
         };
         known.shapes == pair.shapes.map(Some)
@@ -86,10 +85,7 @@ impl StillCache {
         if !is_nearly_unit(pair.rotation) {
             return;
         }
-        if self.0.is_empty() {
-            self.0 = vec![Certified::default(); SLOTS].into();
-        }
-        self.0[slot(pair.key, SLOT_BITS)] = Certified {
+        *self.0.get_or_allocate(pair.key) = Certified {
             rotation: pair.rotation,
             place: pair.place,
             distance,
