@@ -22,8 +22,10 @@ pub(super) struct SteepBuilder {
     pub matrix: AdjacencyMatrix,
     pub points: Box<[DVec3; VERTICES]>,
     pub areas: Box<[Area; TRIANGLES]>,
-    /// Of the triangles, and then of the faces.
+    /// Of the faces, which are the triangles until some of them are merged.
     pub planes: Vec<FaceRecord>,
+    /// Of the triangles that were merged.
+    triangle_planes: Vec<FaceRecord>,
     pub has_polygons: bool,
     pub around: Vec<Neighbor>,
 }
@@ -42,6 +44,7 @@ impl Default for SteepBuilder {
             points: Box::new([DVec3::ZERO; _]),
             areas: Box::new([Area::default(); _]),
             planes: Vec::with_capacity(TRIANGLES),
+            triangle_planes: Vec::with_capacity(TRIANGLES),
             has_polygons: false,
             around: Vec::with_capacity(VERTICES),
         }
@@ -123,14 +126,15 @@ impl SteepBuilder {
     /// Replaces the planes of triangles by those of faces, and returns how far corners are from the plane of their
     /// polygon. `None` if a triangle is turned away from its polygon.
     fn merge(&mut self, polygons: &Rows<u32>) -> Option<f64> {
-        let of_triangles = mem::take(&mut self.planes);
+        mem::swap(&mut self.planes, &mut self.triangle_planes);
+        self.planes.clear();
         let (points, planes) = (&*self.points, &mut self.planes);
         let (mut first, mut thickness) = (0, 0.0_f64);
         self.matrix.merge(polygons, |triangle, polygon| {
             let Some(polygon) = polygon else {
                 planes.push(FaceRecord {
                     first,
-                    ..of_triangles[triangle]
+                    ..self.triangle_planes[triangle]
                 });
                 first += 3;
                 return;
