@@ -11,6 +11,8 @@
 
 mod cached_polytope;
 mod clearance;
+mod face_queue;
+mod horizon;
 mod polytope;
 mod polytope_cache;
 mod seed;

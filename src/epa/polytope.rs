@@ -1,29 +1,27 @@
-//! The expanding polytope: a closed triangulated surface with adjacency, and a heap of its faces ordered by
-//! signed distance from the origin.
-
-use std::cmp::Ordering;
-use std::collections::BinaryHeap;
+//! The expanding polytope: a closed triangulated surface with adjacency, and a queue of its faces ordered by
+//! signed distance from the origin. How it expands is in `horizon`.
 
 use glam::DVec3;
 
+use super::face_queue::FaceQueue;
 use crate::at::At;
 use crate::support::CsoVertex;
 use crate::tolerance::COPLANAR;
 
 /// An edge as one of its faces sees it: four times the face, plus the number of the corner where the edge
 /// starts.
-type FaceEdge = u32;
+pub(super) type FaceEdge = u32;
 
-fn face_edge(face: u32, number: u32) -> FaceEdge {
+pub(super) fn face_edge(face: u32, number: u32) -> FaceEdge {
     4 * face + number
 }
 
-fn face_of(edge: FaceEdge) -> u32 {
+pub(super) fn face_of(edge: FaceEdge) -> u32 {
     edge / 4
 }
 
 /// The number of the edge within its face.
-fn number(edge: FaceEdge) -> usize {
+pub(super) fn number(edge: FaceEdge) -> usize {
     (edge % 4) as usize
 }
 
@@ -31,64 +29,39 @@ fn number(edge: FaceEdge) -> usize {
 const TETRAHEDRON: [[u8; 3]; 4] = [[0, 1, 2], [1, 0, 3], [2, 1, 3], [0, 2, 3]];
 
 /// The number of the next corner.
-const NEXT: [usize; 3] = [1, 2, 0];
+pub(super) const NEXT: [usize; 3] = [1, 2, 0];
 
 #[derive(Clone, Debug)]
-struct Face {
-    corners: [u32; 3],
+pub(super) struct Face {
+    pub corners: [u32; 3],
     /// The same edges as seen from the neighbouring faces.
-    across: [FaceEdge; 3],
-    normal: DVec3,
-    distance: f64,
-    alive: bool,
+    pub across: [FaceEdge; 3],
+    pub normal: DVec3,
+    pub distance: f64,
+    /// Whether it is still part of the surface.
+    pub alive: bool,
 }
 
 impl Face {
     /// How far a point is above the plane.
-    fn height(&self, w: DVec3) -> f64 {
+    pub fn height(&self, w: DVec3) -> f64 {
         self.normal.dot(w) - self.distance
-    }
-}
-
-/// A heap entry. The greatest is the nearest face; of equally near faces, the oldest.
-#[derive(Clone, Copy, Debug)]
-struct Candidate {
-    distance: f64,
-    face: u32,
-}
-
-impl PartialEq for Candidate {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-impl Eq for Candidate {}
-impl PartialOrd for Candidate {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-impl Ord for Candidate {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other
-            .distance
-            .total_cmp(&self.distance)
-            .then(other.face.cmp(&self.face))
     }
 }
 
 /// See the module documentation. Vectors are cleared between queries, but never freed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ExpandingPolytope {
-    vertices: Vec<CsoVertex>,
-    faces: Vec<Face>,
-    heap: BinaryHeap<Candidate>,
-    horizon: Vec<FaceEdge>,
-    visible: Vec<u32>,
-    stack: Vec<FaceEdge>,
-    /// The sides of an added surface, in rows by their start vertex.
-    sides: Vec<FaceEdge>,
-    coplanar: f64,
+    pub vertices: Vec<CsoVertex>,
+    pub faces: Vec<Face>,
+    queue: FaceQueue,
+    pub horizon: Vec<FaceEdge>,
+    pub visible: Vec<u32>,
+    pub stack: Vec<FaceEdge>,
+    /// The edges of an added surface, in rows by their start vertex.
+    edges: Vec<FaceEdge>,
+    /// A point this near to a plane counts as on it.
+    pub coplanar: f64,
     /// Faces whose planes are no nearer than this are not searched.
     search_radius: f64,
 }
@@ -99,7 +72,7 @@ impl ExpandingPolytope {
     pub fn clear(&mut self, size: f64, search_radius: f64) {
         self.vertices.clear();
         self.faces.clear();
-        self.heap.clear();
+        self.queue.clear();
         self.coplanar = COPLANAR * size;
         self.search_radius = search_radius;
     }
@@ -113,20 +86,20 @@ impl ExpandingPolytope {
     pub fn add_surface(&mut self, triangles: &[[u8; 3]]) -> bool {
         const NONE: FaceEdge = FaceEdge::MAX;
         let count = self.vertices.len();
-        let place = |from: u8, to: u8| usize::from(from) * count + usize::from(to);
-        self.sides.clear();
-        self.sides.resize(count * count, NONE);
+        let index = |from: u8, to: u8| usize::from(from) * count + usize::from(to);
+        self.edges.clear();
+        self.edges.resize(count * count, NONE);
         for (triangle, face) in triangles.iter().zip(0..) {
             for (k, number) in (0..3).zip(0..) {
-                let side = &mut self.sides[place(triangle[k], triangle[NEXT[k]])];
-                if *side != NONE {
+                let edge = &mut self.edges[index(triangle[k], triangle[NEXT[k]])];
+                if *edge != NONE {
                     return false;
                 }
-                *side = face_edge(face, number);
+                *edge = face_edge(face, number);
             }
         }
         triangles.iter().all(|triangle| {
-            let across = [0, 1, 2].map(|k| self.sides[place(triangle[NEXT[k]], triangle[k])]);
+            let across = [0, 1, 2].map(|k| self.edges[index(triangle[NEXT[k]], triangle[k])]);
             self.add(triangle.map(u32::from), across);
             !across.contains(&NONE)
         })
@@ -148,11 +121,11 @@ impl ExpandingPolytope {
 
     /// The face whose plane is nearest to the origin, among those still on the surface.
     pub fn nearest_face(&mut self) -> Option<u32> {
-        while let Some(top) = self.heap.peek() {
-            if self.faces.at_ref(top.face).alive {
-                return Some(top.face);
+        while let Some(face) = self.queue.nearest() {
+            if self.faces.at_ref(face).alive {
+                return Some(face);
             }
-            self.heap.pop();
+            self.queue.pop();
         }
         None
     }
@@ -186,8 +159,8 @@ impl ExpandingPolytope {
 
     /// Removes a face from the search, but not from the surface.
     pub fn remove_from_queue(&mut self, face: u32) {
-        if self.heap.peek().is_some_and(|top| top.face == face) {
-            self.heap.pop();
+        if self.queue.nearest() == Some(face) {
+            self.queue.pop();
         }
     }
 
@@ -196,99 +169,8 @@ impl ExpandingPolytope {
         self.search_radius = self.search_radius.min(search_radius);
     }
 
-    /// Expands the polytope to a given point of the difference, if that is outside.
-    pub fn insert_if_outside(&mut self, vertex: &CsoVertex) {
-        let is_outside =
-            |(face, _): &(&Face, u32)| face.alive && face.height(vertex.w) > self.coplanar;
-        let found = self.faces.iter().zip(0..).find(is_outside);
-        if let Some((_, face)) = found {
-            self.expand(face, *vertex);
-        }
-    }
-
-    /// Replaces all faces that see `vertex` by a cone from their horizon to it. If rounding leaves no proper
-    /// horizon, returns `false` and changes nothing.
-    pub fn expand(&mut self, face: u32, vertex: CsoVertex) -> bool {
-        self.find_horizon(face, vertex.w);
-        if !self.horizon_is_closed() {
-            for f in self.visible.drain(..) {
-                self.faces.at_mut(f).alive = true;
-            }
-            return false;
-        }
-        let apex = self.vertices.short_len();
-        self.vertices.push(vertex);
-        let first = self.faces.short_len();
-        let last = first + self.horizon.short_len() - 1;
-        for (i, new) in (first..=last).enumerate() {
-            let outside = self.horizon[i];
-            let [a, b] = self.edge_corners(outside);
-            let next = if new == last { first } else { new + 1 };
-            let previous = if new == first { last } else { new - 1 };
-            // As seen from the new face, the shared edge runs the other way.
-            let across = [outside, face_edge(next, 2), face_edge(previous, 1)];
-            self.add([b, a, apex], across);
-            self.faces.at_mut(face_of(outside)).across[number(outside)] = face_edge(new, 0);
-        }
-        true
-    }
-
-    /// The corners where an edge starts and ends, in its own face's sense.
-    fn edge_corners(&self, edge: FaceEdge) -> [u32; 2] {
-        let corners = self.faces.at_ref(face_of(edge)).corners;
-        let k = number(edge);
-        [corners[k], corners[NEXT[k]]]
-    }
-
-    /// Collects the edges around the faces that are visible from `w`, in order, each as the remaining face sees it.
-    /// Marks the visible faces as dead.
-    fn find_horizon(&mut self, face: u32, w: DVec3) {
-        self.horizon.clear();
-        self.visible.clear();
-        self.stack.clear();
-        self.kill(face);
-        for k in (0..3).rev() {
-            self.stack.push(self.faces.at_ref(face).across[k]);
-        }
-        while let Some(edge) = self.stack.pop() {
-            let f = self.faces.at_ref(face_of(edge));
-            if !f.alive {
-                continue;
-            }
-            if f.height(w) <= -self.coplanar {
-                self.horizon.push(edge);
-                continue;
-            }
-            let across = f.across;
-            self.kill(face_of(edge));
-            let k = NEXT[number(edge)];
-            self.stack.push(across[NEXT[k]]);
-            self.stack.push(across[k]);
-        }
-    }
-
-    fn kill(&mut self, face: u32) {
-        self.faces.at_mut(face).alive = false;
-        self.visible.push(face);
-    }
-
-    /// Whether the horizon is one closed loop through distinct vertices.
-    fn horizon_is_closed(&self) -> bool {
-        let Some(&last) = self.horizon.last() else {
-            return false;
-        };
-        // As seen from outside the visible region, the loop runs backwards.
-        let [mut before, _] = self.edge_corners(last);
-        self.horizon.len() >= 3
-            && self.horizon.iter().all(|&edge| {
-                let [start, end] = self.edge_corners(edge);
-                let follows = end == before;
-                before = start;
-                follows
-            })
-    }
-
-    fn add(&mut self, corners: [u32; 3], across: [FaceEdge; 3]) {
+    /// Adds a face, to the queue as well if it is to be searched.
+    pub fn add(&mut self, corners: [u32; 3], across: [FaceEdge; 3]) {
         let [a, b, c] = corners.map(|v| self.vertex(v).w);
         let area = (b - a).cross(c - a);
         let squared = area.length_squared();
@@ -312,7 +194,7 @@ impl ExpandingPolytope {
             alive: true,
         });
         if distance < self.search_radius {
-            self.heap.push(Candidate { distance, face });
+            self.queue.push(distance, face);
         }
     }
 }
