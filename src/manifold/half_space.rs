@@ -11,7 +11,7 @@ use super::scratch::ClipScratch;
 use crate::pose::{RelativePose, is_unit};
 use crate::query::{Feature, Proximity};
 use crate::simd::{DVec3x4, LANES, f64x4, to_f32x4};
-use crate::support::{FaceCorners, FaceId, Polytope};
+use crate::support::{FaceCorners, FaceId, Polytope, VertexId};
 use crate::tuning::{EDGE_ON, SAME_POINT};
 
 /// The contacts of a polytope with the half-space in front of its deepest vertex, which is the witness of
@@ -26,55 +26,63 @@ pub fn half_space_contacts(
     scratch: &mut ClipScratch,
 ) -> Contacts {
     let witness = proximity.features[0].vertex(shape);
-    let (normal, origin) = (proximity.normal, proximity.on_1);
+    let normal = proximity.normal;
     debug_assert!(is_unit(normal), "no unit vector: {normal}");
-    let distance = |on_1: DVec3x4| {
-        let beyond = (on_1 - origin).dot(normal);
-        f64x4::splat(proximity.signed_distance) - beyond
-    };
     let face = shape.face_at_vertex(witness, normal);
     let polygon = shape.cluster(face).map_or(face, |(outline, _)| outline);
     let corners = shape.face_corners(polygon);
     let count = corners.count();
     let corner = |i: usize| corners.vertex(i.min(count - 1));
-    let contacts = |selection: &Selection| {
-        let [a, b, c, d] = selection.corners;
-        let vertex = |i: Option<usize>| i.map_or(witness, corner);
-        let vertices @ [a, b, c, d] = [vertex(a), vertex(b), vertex(c), vertex(d)];
-        let on_1 = DVec3x4::gather(vertices, |vertex| shape.vertex(vertex));
-        let distance = distance(on_1);
-        let on_2 = pose.points_to_2(on_1 + DVec3x4::scaled(normal, distance));
-        let features = |vertex| [Feature::Vertex(vertex), proximity.features[1]];
-        Contacts {
-            on_1: on_1.to_f32x4(),
-            on_2: on_2.to_f32x4(),
-            distance: to_f32x4(distance),
-            features: [features(a), features(b), features(c), features(d)],
-            len: selection.len,
-        }
-    };
     let mut selection = Selection::default();
     selection.push(None);
-    if shape.face_normal(face).dot(normal) <= EDGE_ON {
-        return contacts(&selection);
-    }
-    if count <= MAX_POINTS {
+    let is_edge_on = shape.face_normal(face).dot(normal) <= EDGE_ON;
+    if !is_edge_on && count > MAX_POINTS {
+        push_spread(
+            shape,
+            polygon,
+            proximity,
+            max_distance,
+            scratch,
+            &mut selection,
+        );
+    } else if !is_edge_on {
         let others = (0..count).filter(|&i| corner(i) != witness);
         others
             .take(MAX_POINTS - 1)
             .for_each(|i| selection.push(Some(i)));
-        return contacts(&selection);
     }
-    let frame = ContactFrame::new(origin, normal);
-    push_spread(
-        shape,
-        polygon,
-        &frame,
-        (distance, max_distance),
-        scratch,
-        &mut selection,
-    );
-    contacts(&selection)
+    let vertices = selection.corners.map(|i| i.map_or(witness, corner));
+    Contacts {
+        len: selection.len,
+        ..contacts_at(shape, pose, proximity, vertices)
+    }
+}
+
+/// The contacts of four vertices.
+#[inline]
+fn contacts_at(
+    shape: &impl Polytope,
+    pose: &RelativePose,
+    proximity: &Proximity,
+    vertices: [VertexId; MAX_POINTS],
+) -> Contacts {
+    let on_1 = DVec3x4::gather(vertices, |vertex| shape.vertex(vertex));
+    let distance = distances(proximity, on_1);
+    let on_2 = pose.points_to_2(on_1 + DVec3x4::scaled(proximity.normal, distance));
+    Contacts {
+        on_1: on_1.to_f32x4(),
+        on_2: on_2.to_f32x4(),
+        distance: to_f32x4(distance),
+        features: vertices.map(|vertex| [Feature::Vertex(vertex), proximity.features[1]]),
+        len: MAX_POINTS,
+    }
+}
+
+/// The distances of points of the polytope from the half-space.
+#[inline]
+fn distances(proximity: &Proximity, on_1: DVec3x4) -> f64x4 {
+    let beyond = (on_1 - proximity.on_1).dot(proximity.normal);
+    f64x4::splat(proximity.signed_distance) - beyond
 }
 
 /// The corners of the face that lies on a half-space, cut off at `max_distance` from it, counter-clockwise
@@ -121,12 +129,11 @@ pub fn half_space_polygon(
 }
 
 /// Adds corners of a face that span much of the plane, first among those nearer than `max_distance`.
-#[inline(always)]
 fn push_spread(
     shape: &impl Polytope,
     polygon: FaceId,
-    frame: &ContactFrame,
-    (distance, max_distance): (impl Fn(DVec3x4) -> f64x4, f64),
+    proximity: &Proximity,
+    max_distance: f64,
     scratch: &mut ClipScratch,
     selection: &mut Selection,
 ) {
@@ -139,19 +146,19 @@ fn push_spread(
     } = scratch;
     let polygon = shape.face_corners(polygon);
     let count = polygon.count();
-    let plane = frame.projection();
+    let plane = ContactFrame::new(proximity.on_1, proximity.normal).projection();
     window.set(count, |numbers| {
         plane.flatten(numbers.map(|i| polygon.point(i)))
     });
     corners.set(window);
-    let distances = |row: usize, _, _| {
+    let of_row = |row: usize, _, _| {
         let corner = |lane: usize| (LANES * row + lane).min(count - 1);
         let of_lane = |lane| shape.vertex(polygon.vertex(corner(lane)));
-        to_f32x4(distance(DVec3x4::gather([0, 1, 2, 3], of_lane)))
+        to_f32x4(distances(proximity, DVec3x4::gather([0, 1, 2, 3], of_lane)))
     };
     let range = f32::NEG_INFINITY..=max_distance as f32;
     let same = SAME_POINT * shape.radius() as f32;
-    candidates.set(corners, distances, range, same);
+    candidates.set(corners, of_row, range, same);
     selection.push_all(candidates.spread_out(corners, Vec2::ZERO, same));
     selection.fill_up(candidates);
 }
