@@ -22,6 +22,12 @@ pub(crate) trait At<T> {
     /// If there is none.
     fn at_mut(&mut self, index: u32) -> &mut T;
 
+    /// A reference to the element at an index, if there is one.
+    fn try_at(&self, index: u32) -> Option<&T>;
+
+    /// The place of the element at an index, if there is one.
+    fn try_at_mut(&mut self, index: u32) -> Option<&mut T>;
+
     /// The number of elements, which short indices reach.
     fn short_len(&self) -> u32;
 }
@@ -43,6 +49,16 @@ impl<T> At<T> for [T] {
     #[inline]
     fn at_mut(&mut self, index: u32) -> &mut T {
         &mut self[index as usize]
+    }
+
+    #[inline]
+    fn try_at(&self, index: u32) -> Option<&T> {
+        self.get(index as usize)
+    }
+
+    #[inline]
+    fn try_at_mut(&mut self, index: u32) -> Option<&mut T> {
+        self.get_mut(index as usize)
     }
 
     #[inline]

@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use super::clearance::{Cap, Clearance, KnownDepth};
 use super::polytope::{EpaScratch, ExpandingPolytope, min_no_nan};
+use crate::at::At;
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
 use crate::tolerance::{DEPTH_GAP, PROOF_MARGIN};
@@ -160,7 +161,7 @@ impl CachedPolytope {
         for corners in polytope.surface() {
             let face = self.faces.get_mut(usize::from(self.face_count))?;
             for (corner, &vertex) in face.iter_mut().zip(corners) {
-                let number = numbers.get_mut(vertex as usize)?;
+                let number = numbers.try_at_mut(vertex)?;
                 if *number == NONE {
                     let key = self.vertices.get_mut(usize::from(self.vertex_count))?;
                     *key = vertex_key(polytope.vertex(vertex), center);

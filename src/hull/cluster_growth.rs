@@ -34,7 +34,9 @@ pub(super) fn grow_clusters(points: &[Vec3], faces: &Faces, graph: &EdgeGraph) -
 
 /// The faces beside one of about their direction, the largest first.
 fn seeds(points: &[Vec3], faces: &Faces) -> impl Iterator<Item = u16> {
-    let seeds = (0..faces.len() as u16).filter(|&face| faces.is_beside_like(face.into()));
+    let seeds = (0..)
+        .take(faces.len())
+        .filter(|&face: &u16| faces.is_beside_like(face.into()));
     largest_first(seeds, |face| area(points, faces, face))
 }
 

@@ -6,6 +6,7 @@ use glam::{DVec3, Vec3};
 
 use super::clusters::FaceClusters;
 use super::graph::{FaceCorner, NO_EDGE, pack_edge};
+use crate::at::At;
 use crate::support::{EdgeId, FaceCorners, FaceId, VertexId};
 
 /// The faces, and the clusters of some of them.
@@ -76,7 +77,7 @@ impl FaceRecord {
     pub(super) fn end(corners: &[FaceCorner]) -> Self {
         Self {
             normal: Vec3::ZERO,
-            first: corners.len() as u32,
+            first: corners.short_len(),
             offset: f64::INFINITY,
         }
     }

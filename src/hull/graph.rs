@@ -266,7 +266,8 @@ mod tests {
                     let f = FaceId::from(*f);
                     (0..hull.face_len(f)).any(|i| hull.face_vertex(f, i) == v)
                 };
-                let all: Vec<u16> = (0..hull.face_count() as u16)
+                let all: Vec<u16> = (0..)
+                    .take(hull.face_count())
                     .filter(|f| has(f, v))
                     .collect();
                 assert_eq!(faces, all, "{sides} sides, around {v}");

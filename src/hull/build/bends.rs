@@ -130,9 +130,7 @@ impl Bends {
     /// it.
     #[inline]
     pub fn is_steep(&self, vertex: u32) -> bool {
-        self.at_low_edge
-            .get(vertex as usize)
-            .is_none_or(|&is_at| !is_at)
+        self.at_low_edge.try_at(vertex).is_none_or(|&is_at| !is_at)
     }
 
     /// Whether no edge is a [`FLAT_EDGE`], so that the points have no other triangulation.

@@ -200,7 +200,7 @@ impl EdgesWithin {
             return None;
         }
         for v in rest[..count].iter().flat_map(|edge| edge.1) {
-            *self.ends.get_mut(v as usize)? += 1;
+            *self.ends.try_at_mut(v)? += 1;
         }
         self.next += count;
         let mut left = count;
@@ -208,7 +208,7 @@ impl EdgesWithin {
         for &corner in corners {
             chain.push(corner);
             while let [.., a, b, c] = chain[..]
-                && *self.ends.get(b as usize)? == 0
+                && *self.ends.try_at(b)? == 0
             {
                 triangles.push([a, b, c]);
                 chain.truncate(chain.len() - 2);
@@ -216,7 +216,7 @@ impl EdgesWithin {
                 if left > 0 {
                     left -= 1;
                     for v in [a, c] {
-                        let ends = self.ends.get_mut(v as usize)?;
+                        let ends = self.ends.try_at_mut(v)?;
                         *ends = ends.checked_sub(1)?;
                     }
                 }

@@ -183,7 +183,7 @@ impl Builder<'_> {
         self.has_planes &= plane.offset < f64::INFINITY;
         self.polygons.push(FaceRecord {
             normal: plane.normal,
-            first: self.corners.len() as u32,
+            first: self.corners.short_len(),
             offset: plane.offset,
         });
         face

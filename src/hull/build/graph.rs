@@ -84,9 +84,9 @@ impl EdgeGraph {
         };
         let mut builder = GraphBuilder::new(mesh.vertex_count());
         let mut around = Vec::new();
-        for v in 0..mesh.vertex_count() {
+        for v in (0..).take(mesh.vertex_count()) {
             around.clear();
-            around.extend(mesh.outgoing(v as u32).iter().map(neighbor));
+            around.extend(mesh.outgoing(v).iter().map(neighbor));
             builder.push(&around);
         }
         builder.finish()

@@ -150,8 +150,7 @@ impl<'a> HalfEdgeMesh<'a> {
                 if v < side.to {
                     let [here, there] = [side.half_edge(), beside.previous()];
                     for (h, twin) in [(here, there), (there, here)] {
-                        let h = h as usize;
-                        (self.slots[h], self.twin[h]) = (slot, twin);
+                        (*self.slots.at_mut(h), *self.twin.at_mut(h)) = (slot, twin);
                     }
                 }
                 (place, side) = (next, beside);
@@ -194,7 +193,7 @@ pub(in crate::hull) fn triangle(h: HalfEdge) -> usize {
 fn first_sides(triangles: &[[u32; 3]], count: usize) -> Vec<u32> {
     let mut first = vec![0; count + 1];
     for &from in triangles.as_flattened() {
-        first[from as usize + 1] += 1;
+        *first[1..].at_mut(from) += 1;
     }
     let mut end = 0;
     for place in &mut first {
@@ -224,7 +223,7 @@ fn sides_by_start(triangles: &[[u32; 3]], first: &mut [u32]) -> Vec<DirectedEdge
     // Now each entry is where the sides of the vertex before it begin.
     first.rotate_left(1);
     if let Some(end) = first.last_mut() {
-        *end = sides.len() as u32;
+        *end = sides.short_len();
     }
     sides
 }

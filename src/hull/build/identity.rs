@@ -32,7 +32,7 @@ impl Diagonals {
     }
 
     pub(super) fn all(polyhedron: &ConvexPolyhedron) -> Self {
-        Self::of(polyhedron, 0..polyhedron.edges().len() as u32)
+        Self::of(polyhedron, 0..polyhedron.edges().short_len())
     }
 
     /// Whether a polyhedron with the same points has the same hull.
@@ -45,7 +45,7 @@ impl Diagonals {
     fn are_among_edges_of(&self, polyhedron: &ConvexPolyhedron) -> bool {
         let edges = polyhedron.edges();
         self.0.iter().all(|&(id, ends)| {
-            let edge = edges.get(id as usize);
+            let edge = edges.try_at(id);
             edge.is_some_and(|edge| edge.vertices == ends)
         })
     }

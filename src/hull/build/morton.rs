@@ -18,7 +18,7 @@ pub(in crate::hull) fn morton_order(
     let low = points.iter().copied().reduce(Vec3::min).unwrap_or_default();
     let high = points.iter().copied().reduce(Vec3::max).unwrap_or_default();
     let cells = (1 << BITS) as f32 / (high - low).max_element();
-    let mut order: Vec<u32> = (0..points.len() as u32).collect();
+    let mut order: Vec<u32> = (0..points.short_len()).collect();
     order.sort_by_cached_key(|&v| morton_code((points.at(v) - low) * cells));
     let mut number = vec![0; points.len()];
     for (new, &old) in (0..).zip(&order) {

@@ -27,13 +27,13 @@ pub(super) fn convex_hull(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>),
     if surface.vertex_count > corners.len() {
         return convex_hull(&vertices);
     }
-    let mut names = vec![0; points.len()];
-    for (name, &corner) in corners.iter().enumerate() {
-        names[corner] = name as u32;
+    let mut ids = vec![0; points.len()];
+    for (id, &corner) in (0..).zip(&corners) {
+        ids[corner] = id;
     }
     let facets = surface.facets.iter().filter(|facet| !facet.is_removed);
-    let named = |facet: &HullFacet| facet.vertices.map(|v| names.at(v));
-    Ok((vertices, facets.map(named).collect()))
+    let triangle = |facet: &HullFacet| facet.vertices.map(|v| ids.at(v));
+    Ok((vertices, facets.map(triangle).collect()))
 }
 
 /// A triangle of the surface.
@@ -107,7 +107,7 @@ impl<'a> GrowingHull<'a> {
             vertex_count: 4,
             starting_at: vec![0; points.len()],
         };
-        for point in 0..points.len() as u32 {
+        for point in 0..points.short_len() {
             surface.hand_over(point, 0);
         }
         Ok(surface)
@@ -119,11 +119,11 @@ impl<'a> GrowingHull<'a> {
     }
 
     fn facet_count(&self) -> u32 {
-        self.facets.len() as u32
+        self.facets.short_len()
     }
 
     fn facet(&self, id: u32) -> &HullFacet {
-        &self.facets[id as usize]
+        self.facets.at_ref(id)
     }
 
     fn facet_mut(&mut self, id: u32) -> &mut HullFacet {

@@ -58,7 +58,7 @@ impl CoplanarRegions {
             }
         };
         let is_beside = |t: &u32| (3 * t..3 * t + 3).any(|side| flat.contains(side));
-        let seeds = (0..regions.of.len() as u32).filter(is_beside);
+        let seeds = (0..regions.of.short_len()).filter(is_beside);
         for seed in largest_first(seeds, |t| surface.triangles.at(t).area) {
             if regions.of.at(seed) != FREE {
                 continue;
@@ -145,7 +145,7 @@ impl CoplanarRegions {
 
     /// The number of the region that is added next.
     fn next_id(&self) -> u32 {
-        self.len() as u32
+        self.first.short_len() - 1
     }
 
     pub fn triangles(&self, region: usize) -> &[u32] {

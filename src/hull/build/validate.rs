@@ -23,7 +23,7 @@ pub(super) fn validate_finite(points: &[Vec3]) -> Result<(), HullError> {
 
 pub(super) fn validate_triangles(points: &[Vec3], triangles: &[[u32; 3]]) -> Result<(), HullError> {
     let bad = |&[a, b, c]: &[u32; 3]| {
-        a == b || b == c || c == a || [a, b, c].iter().any(|&v| v as usize >= points.len())
+        a == b || b == c || c == a || [a, b, c].iter().any(|&v| points.try_at(v).is_none())
     };
     match triangles.iter().position(bad) {
         Some(i) => Err(HullError::BadTriangle(i)),

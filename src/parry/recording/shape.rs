@@ -8,6 +8,7 @@ use parry3d::shape::{
 
 use super::error::{RecordingError, RecordingErrorKind};
 use super::lines::{self, Lines};
+use crate::at::At;
 use crate::hull::build::polyhedron;
 use crate::parry::hull_shape::HullShape;
 
@@ -146,7 +147,7 @@ pub(super) fn read(lines: &mut Lines<'_>) -> Result<SharedShape, RecordingError>
 fn surface(lines: &mut Lines<'_>) -> Result<ConvexPolyhedron, RecordingError> {
     let points = lines.list("points", |words| words.vector())?;
     let triangles = lines.list("triangles", |words| words.numbers::<u32, 3>())?;
-    let is_known = |corner: &u32| (*corner as usize) < points.len();
+    let is_known = |corner: &u32| points.try_at(*corner).is_some();
     let bad = lines.error(RecordingErrorKind::BadShape);
     if !triangles.as_flattened().iter().all(is_known) {
         return Err(bad);
