@@ -20,5 +20,6 @@ pub mod scanned;
 pub mod scene;
 pub mod scenes;
 pub mod shape_samples;
+pub mod silent;
 pub mod twins;
 pub mod world;

@@ -1,12 +1,74 @@
 //! What rapier keeps about a pair of colliders between frames.
 
-use isa_gjk::{Stage, Stats};
+use isa_gjk::{IsaGjkDispatcher, Stage, Stats};
 use parry3d::math::{Pose, Real};
-use parry3d::query::details::ContactManifoldsWorkspace;
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
-use parry3d::shape::SharedShape;
+use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints};
+use parry3d::query::{
+    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, Unsupported,
+};
+use parry3d::shape::{Shape, SharedShape};
 
-pub type Manifold = ContactManifold<(), ()>;
+use super::silent::Silent;
+
+/// Some tests keep a number with each contact, as a solver does.
+pub type Manifold = ContactManifold<(), u32>;
+
+/// The functions of [`PersistentQueryDispatcher`], compiled with this crate. Those are generic over the solver's
+/// data: each program that calls them compiles the whole update of a manifold, which takes a third of a minute.
+pub trait UpdateManifolds {
+    fn update_manifolds(
+        &self,
+        pos12: &Pose,
+        shapes: [&dyn Shape; 2],
+        prediction: Real,
+        manifolds: &mut Vec<Manifold>,
+        workspace: &mut Option<ContactManifoldsWorkspace>,
+    ) -> Result<(), Unsupported>;
+
+    /// Of two convex shapes, whose normals may be constrained.
+    fn update_manifold(
+        &self,
+        pos12: &Pose,
+        shapes: [&dyn Shape; 2],
+        constraints: [Option<&dyn NormalConstraints>; 2],
+        prediction: Real,
+        manifold: &mut Manifold,
+    ) -> Result<(), Unsupported>;
+}
+
+macro_rules! compile {
+    ($($dispatcher:ty),*) => {$(
+        impl UpdateManifolds for $dispatcher {
+            fn update_manifolds(
+                &self,
+                pos12: &Pose,
+                [a, b]: [&dyn Shape; 2],
+                prediction: Real,
+                manifolds: &mut Vec<Manifold>,
+                workspace: &mut Option<ContactManifoldsWorkspace>,
+            ) -> Result<(), Unsupported> {
+                self.contact_manifolds(pos12, a, b, prediction, manifolds, workspace)
+            }
+
+            fn update_manifold(
+                &self,
+                pos12: &Pose,
+                [a, b]: [&dyn Shape; 2],
+                [on_a, on_b]: [Option<&dyn NormalConstraints>; 2],
+                prediction: Real,
+                manifold: &mut Manifold,
+            ) -> Result<(), Unsupported> {
+                self.contact_manifold_convex_convex(pos12, a, b, on_a, on_b, prediction, manifold)
+            }
+        }
+    )*};
+}
+
+compile!(
+    IsaGjkDispatcher,
+    IsaGjkDispatcher<Silent>,
+    DefaultQueryDispatcher
+);
 
 #[derive(Clone, Default)]
 pub struct Memory {
@@ -18,21 +80,15 @@ impl Memory {
     /// The only manifold of a pair of convex shapes, after another frame.
     pub fn update(
         &mut self,
-        dispatcher: &impl PersistentQueryDispatcher<(), ()>,
+        dispatcher: &impl UpdateManifolds,
         pose: &Pose,
         shapes: [&SharedShape; 2],
         prediction: Real,
     ) -> Option<&Manifold> {
-        let [shape1, shape2] = shapes;
+        let shapes = shapes.map(|shape| &**shape);
+        let (manifolds, workspace) = (&mut self.manifolds, &mut self.workspace);
         dispatcher
-            .contact_manifolds(
-                pose,
-                &**shape1,
-                &**shape2,
-                prediction,
-                &mut self.manifolds,
-                &mut self.workspace,
-            )
+            .update_manifolds(pose, shapes, prediction, manifolds, workspace)
             .ok()?;
         self.manifolds.first()
     }
@@ -40,7 +96,7 @@ impl Memory {
 
 /// What a manifold without a past says.
 pub fn cold_manifold(
-    dispatcher: &impl PersistentQueryDispatcher,
+    dispatcher: &impl UpdateManifolds,
     pose: &Pose,
     shapes: [&SharedShape; 2],
     prediction: Real,

@@ -122,7 +122,7 @@ impl<'a> Scene<'a> {
     }
 
     /// A point lies in both shapes, and its distance is measured along the normal.
-    fn judge_point(&self, finding: &mut Finding, manifold: &Manifold, point: &TrackedContact<()>) {
+    fn judge_point(&self, finding: &mut Finding, manifold: &Manifold, point: &TrackedContact<u32>) {
         let (p1, p2) = (point.local_p1.as_dvec3(), point.local_p2.as_dvec3());
         let along = (self.pose.apply(p2) - p1).dot(manifold.local_n1.as_dvec3());
         finding.at_most(

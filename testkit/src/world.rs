@@ -105,9 +105,14 @@ pub fn start(i: usize, rng: &mut Rng) -> Pose {
     Pose::new(cell * 1.2, rng.direction().as_vec3())
 }
 
+/// A narrow phase with a dispatcher of ours. The update of its manifolds is compiled here, and not in each program.
+pub fn narrow_phase(dispatcher: &IsaGjkDispatcher) -> NarrowPhase {
+    NarrowPhase::with_query_dispatcher(dispatcher.clone())
+}
+
 /// A narrow phase with our dispatcher.
 pub fn ours() -> NarrowPhase {
-    NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default())
+    narrow_phase(&IsaGjkDispatcher::default())
 }
 
 /// The bits of all poses and velocities.

@@ -2,20 +2,26 @@
 
 use isa_gjk::{IsaGjkDispatcher, Stage};
 use parry3d::math::{Pose, Real, Rotation, Vector};
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Shape, SharedShape};
 use testkit::generate::Rng;
+use testkit::memory::{Manifold, UpdateManifolds};
 
 const FRAMES: u64 = 60;
 
 /// Steps a hull that tumbles beside a wall, and counts the answers that came from the axis.
 fn answers_by_axis(shapes: [&dyn Shape; 2], pose: impl Fn(Real) -> Pose) -> u64 {
     let dispatcher = IsaGjkDispatcher::default();
-    let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+    let mut manifolds: Vec<Manifold> = Vec::new();
     for frame in 0..FRAMES {
         let [a, b] = shapes;
         dispatcher
-            .contact_manifolds(&pose(frame as Real), a, b, 0.01, &mut manifolds, &mut None)
+            .update_manifolds(
+                &pose(frame as Real),
+                [a, b],
+                0.01,
+                &mut manifolds,
+                &mut None,
+            )
             .expect("supported");
         assert!(
             manifolds[0].points.is_empty(),

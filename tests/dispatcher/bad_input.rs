@@ -12,13 +12,11 @@ use glam::{DQuat, DVec3};
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::query::details::ShapeCastOptions;
-use parry3d::query::{
-    ClosestPoints, Contact, ContactManifold, PersistentQueryDispatcher, QueryDispatcher,
-};
+use parry3d::query::{ClosestPoints, Contact, QueryDispatcher};
 use parry3d::shape::SharedShape;
 use testkit::cases::Hull;
 use testkit::generate::Rng;
-use testkit::memory::{Manifold, Memory, cold_manifold};
+use testkit::memory::{Manifold, Memory, UpdateManifolds, cold_manifold};
 use testkit::oracle::{Solid, regret, signed_distance};
 use testkit::pose::ExactPose;
 use testkit::report::{Finding, Report};
@@ -448,8 +446,8 @@ fn half_spaces_and_cells_are_left_unanswered() {
                 let way = -pose.translation;
                 let cast = dispatcher.cast_shapes(&pose, way, a, b, ShapeCastOptions::default());
                 assert!(cast.is_err(), "{cast:?}");
-                let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
-                let _ = dispatcher.contact_manifolds(&pose, a, b, 0.1, &mut manifolds, &mut None);
+                let mut manifolds: Vec<Manifold> = Vec::new();
+                let _ = dispatcher.update_manifolds(&pose, [a, b], 0.1, &mut manifolds, &mut None);
             }
         }
     }

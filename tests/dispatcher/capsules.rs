@@ -3,11 +3,9 @@
 use glam::DVec3;
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Rotation, Vector};
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::Capsule;
+use testkit::memory::{Manifold, UpdateManifolds};
 use testkit::oracle::distance_to_segment;
-
-type Manifold = ContactManifold<(), u32>;
 
 const PREDICTION: f32 = 0.02;
 /// What f32 leaves of points and distances a metre in size.
@@ -17,7 +15,7 @@ fn manifold(capsules: [&Capsule; 2], pose: &Pose) -> Manifold {
     let mut manifolds: Vec<Manifold> = Vec::new();
     let [first, second] = capsules;
     IsaGjkDispatcher::default()
-        .contact_manifolds(pose, first, second, PREDICTION, &mut manifolds, &mut None)
+        .update_manifolds(pose, [first, second], PREDICTION, &mut manifolds, &mut None)
         .expect("capsules are supported");
     manifolds.remove(0)
 }
@@ -172,7 +170,7 @@ fn contacts_keep_their_data() {
         let turn = Rotation::from_rotation_x(1e-4 * step as f32);
         let pose = Pose::from_parts(Vector::new(0.199, 0.01 * step as f32, 0.0), turn);
         dispatcher
-            .contact_manifolds(&pose, &log, &log, PREDICTION, &mut manifolds, &mut None)
+            .update_manifolds(&pose, [&log, &log], PREDICTION, &mut manifolds, &mut None)
             .expect("capsules are supported");
         let ends = manifolds[0]
             .points

@@ -7,11 +7,11 @@
 
 use isa_gjk::{HullShape, IsaGjkDispatcher};
 use parry3d::math::{Pose, Real, Vector};
-use parry3d::query::{DefaultQueryDispatcher, PersistentQueryDispatcher, TrackedContact};
+use parry3d::query::{DefaultQueryDispatcher, TrackedContact};
 use parry3d::shape::{PackedFeatureId, SharedShape};
 use testkit::cases::{Hull, hulls, trajectories};
 use testkit::generate::Rng;
-use testkit::memory::{Manifold, Memory};
+use testkit::memory::{Manifold, Memory, UpdateManifolds};
 use testkit::report::Report;
 use testkit::scene::{Scene, random_scene};
 
@@ -158,10 +158,9 @@ fn manifolds_of_another_dispatcher_do_no_harm() {
         for (route, source) in [("same pose", &scene), ("another pose", &earlier)] {
             let mut memory = Memory::default();
             DefaultQueryDispatcher
-                .contact_manifolds(
+                .update_manifolds(
                     &source.pose.to_f32(),
-                    &**source.shapes[0],
-                    &**source.shapes[1],
+                    [&**source.shapes[0], &**source.shapes[1]],
                     source.prediction(),
                     &mut memory.manifolds,
                     &mut memory.workspace,

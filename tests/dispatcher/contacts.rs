@@ -7,12 +7,11 @@ use glam::{DQuat, DVec3, EulerRot};
 use isa_gjk::{HullShape, IsaGjkDispatcher};
 use oorandom::Rand32;
 use parry3d::math::{Pose, Real, Rotation, Vector};
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher, TrackedContact};
+use parry3d::query::TrackedContact;
 use parry3d::shape::{ConvexPolyhedron, PackedFeatureId, SharedShape};
 
+use testkit::memory::{Manifold, UpdateManifolds};
 use testkit::scanned::noisy_box;
-
-type Manifold = ContactManifold<(), u32>;
 
 const HALF_HEIGHT: Real = 0.4;
 
@@ -44,7 +43,7 @@ fn update_pair(
     prediction: Real,
 ) {
     IsaGjkDispatcher::default()
-        .contact_manifolds(&pos12, &**a, &**b, prediction, manifolds, &mut None)
+        .update_manifolds(&pos12, [&**a, &**b], prediction, manifolds, &mut None)
         .expect("supported");
 }
 

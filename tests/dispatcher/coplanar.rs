@@ -2,11 +2,10 @@
 
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Real, Vector};
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher, QueryDispatcher};
+use parry3d::query::QueryDispatcher;
 use parry3d::shape::{Shape, SharedShape};
+use testkit::memory::{Manifold, UpdateManifolds};
 use testkit::scenes::hulls::cuboid;
-
-type Manifold = ContactManifold<(), ()>;
 
 const HALF: Real = 0.1;
 const PREDICTION: Real = 0.05;
@@ -33,10 +32,9 @@ fn pose(cubes: usize, tilt: Real) -> Pose {
 fn manifolds(pos12: &Pose, [first, second]: [&dyn Shape; 2]) -> Vec<Manifold> {
     let (mut manifolds, mut workspace) = (Vec::new(), None);
     IsaGjkDispatcher::default()
-        .contact_manifolds(
+        .update_manifolds(
             pos12,
-            first,
-            second,
+            [first, second],
             PREDICTION,
             &mut manifolds,
             &mut workspace,

@@ -4,10 +4,10 @@
 use glam::{DQuat, DVec3};
 use isa_gjk::{HullShape, IsaGjkDispatcher};
 use parry3d::math::{Pose, Rotation, Vector};
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Compound, CompoundFlags, SharedShape};
 use testkit::budget;
 use testkit::generate::Rng;
+use testkit::memory::{Manifold, UpdateManifolds};
 
 /// Half of the side of the whole.
 const HALF: f64 = 2.0;
@@ -79,9 +79,15 @@ fn what_is_pressed_in_over_a_seam_is_pushed_out_of_the_whole() {
         let pose = Pose::from_parts(place.as_vec3(), Rotation::from(turn.as_quat()));
         let pressed = box_between(-half, half);
 
-        let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+        let mut manifolds: Vec<Manifold> = Vec::new();
         IsaGjkDispatcher::default()
-            .contact_manifolds(&pose, &*ground, &*pressed, 0.002, &mut manifolds, &mut None)
+            .update_manifolds(
+                &pose,
+                [&*ground, &*pressed],
+                0.002,
+                &mut manifolds,
+                &mut None,
+            )
             .expect("supported");
         let what = format!("{round}: {half} at {pose:?}");
         let mut deepest: f64 = 0.0;

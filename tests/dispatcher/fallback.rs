@@ -1,120 +1,14 @@
 //! Pairs that are left to the fallback dispatcher, and their counts.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::atomic::Ordering;
 
 use isa_gjk::{IsaGjkDispatcher, Left};
 use parry3d::math::{Pose, Real, Vector};
-use parry3d::query::details::{ContactManifoldsWorkspace, NormalConstraints, ShapeCastOptions};
-use parry3d::query::{
-    ClosestPoints, Contact, ContactManifold, NonlinearRigidMotion, PersistentQueryDispatcher,
-    QueryDispatcher, ShapeCastHit, ShapeDistance, ShapeIntersection, Unsupported,
-};
-use parry3d::shape::{ConvexPolyhedron, Cuboid, Shape, SharedShape};
+use parry3d::query::QueryDispatcher;
+use parry3d::shape::{ConvexPolyhedron, Cuboid, SharedShape};
 use testkit::generate::Rng;
-use testkit::memory::cold_manifold;
-
-/// Supports nothing, and counts its calls.
-#[derive(Clone, Default)]
-struct Silent(Arc<AtomicU32>);
-
-impl Silent {
-    fn asked<T>(&self) -> Result<T, Unsupported> {
-        self.0.fetch_add(1, Ordering::Relaxed);
-        Err(Unsupported)
-    }
-}
-
-impl QueryDispatcher for Silent {
-    fn intersection_test(
-        &self,
-        _: &Pose,
-        _: &dyn Shape,
-        _: &dyn Shape,
-    ) -> Result<ShapeIntersection, Unsupported> {
-        self.asked()
-    }
-
-    fn distance(
-        &self,
-        _: &Pose,
-        _: &dyn Shape,
-        _: &dyn Shape,
-    ) -> Result<ShapeDistance, Unsupported> {
-        self.asked()
-    }
-
-    fn contact(
-        &self,
-        _: &Pose,
-        _: &dyn Shape,
-        _: &dyn Shape,
-        _: Real,
-    ) -> Result<Option<Contact>, Unsupported> {
-        self.asked()
-    }
-
-    fn closest_points(
-        &self,
-        _: &Pose,
-        _: &dyn Shape,
-        _: &dyn Shape,
-        _: Real,
-    ) -> Result<ClosestPoints, Unsupported> {
-        self.asked()
-    }
-
-    fn cast_shapes(
-        &self,
-        _: &Pose,
-        _: Vector,
-        _: &dyn Shape,
-        _: &dyn Shape,
-        _: ShapeCastOptions,
-    ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        self.asked()
-    }
-
-    fn cast_shapes_nonlinear(
-        &self,
-        _: &NonlinearRigidMotion,
-        _: &dyn Shape,
-        _: &NonlinearRigidMotion,
-        _: &dyn Shape,
-        _: Real,
-        _: Real,
-        _: bool,
-    ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        self.asked()
-    }
-}
-
-impl<M, C> PersistentQueryDispatcher<M, C> for Silent {
-    fn contact_manifolds(
-        &self,
-        _: &Pose,
-        _: &dyn Shape,
-        _: &dyn Shape,
-        _: Real,
-        _: &mut Vec<ContactManifold<M, C>>,
-        _: &mut Option<ContactManifoldsWorkspace>,
-    ) -> Result<(), Unsupported> {
-        self.asked()
-    }
-
-    fn contact_manifold_convex_convex(
-        &self,
-        _: &Pose,
-        _: &dyn Shape,
-        _: &dyn Shape,
-        _: Option<&dyn NormalConstraints>,
-        _: Option<&dyn NormalConstraints>,
-        _: Real,
-        _: &mut ContactManifold<M, C>,
-    ) -> Result<(), Unsupported> {
-        self.asked()
-    }
-}
+use testkit::memory::{UpdateManifolds, cold_manifold};
+use testkit::silent::Silent;
 
 fn hull() -> SharedShape {
     Rng::new(7).hull(12, 1.0).shape
@@ -157,10 +51,9 @@ fn only_what_is_not_ours_reaches_the_fallback() {
 
     assert!(dispatcher.distance(&near, &*ball, &*ball).is_err());
     assert_eq!(silent.0.load(Ordering::Relaxed), 1);
-    let mut manifolds = Vec::<ContactManifold<(), ()>>::new();
-    let workspace = &mut None;
-    let asked =
-        dispatcher.contact_manifolds(&near, &*compound, &*ball, 0.1, &mut manifolds, workspace);
+    let (mut manifolds, workspace) = (Vec::new(), &mut None);
+    let shapes = [&*compound, &*ball];
+    let asked = dispatcher.update_manifolds(&near, shapes, 0.1, &mut manifolds, workspace);
     assert!(asked.is_ok(), "taking compounds apart is ours");
     assert_eq!(
         silent.0.load(Ordering::Relaxed),

@@ -5,11 +5,11 @@ use isa_gjk::internals::support::Support;
 use isa_gjk::{Hull, HullError, HullShape, IsaGjkDispatcher};
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::ShapeCastOptions;
-use parry3d::query::{DefaultQueryDispatcher, PersistentQueryDispatcher, QueryDispatcher};
+use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
 use parry3d::shape::{ShapeType, SharedShape, TypedShape};
 use testkit::cases::hulls;
 use testkit::generate::{Rng, prepared};
-use testkit::memory::{Manifold, Memory};
+use testkit::memory::{Manifold, Memory, UpdateManifolds};
 use testkit::shape_samples::{poses, shape_samples};
 use testkit::twins::{assert_same, hull_shape, with_twins};
 
@@ -23,7 +23,7 @@ fn update(shapes: [&SharedShape; 2], pose: &Pose, memory: &mut Memory) {
     let [a, b] = shapes;
     let (manifolds, workspace) = (&mut memory.manifolds, &mut memory.workspace);
     IsaGjkDispatcher::default()
-        .contact_manifolds(pose, &**a, &**b, 0.1, manifolds, workspace)
+        .update_manifolds(pose, [&**a, &**b], 0.1, manifolds, workspace)
         .expect("hulls are supported");
 }
 

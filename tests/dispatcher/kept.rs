@@ -3,11 +3,10 @@
 use glam::DVec3;
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Real, Rotation, Vector};
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{HeightField, HeightFieldFlags, SharedShape, TriMeshFlags};
 use parry3d::utils::Array2;
 use testkit::generate::Rng;
-use testkit::memory::{Manifold, Memory, cold_manifold, kept};
+use testkit::memory::{Manifold, Memory, UpdateManifolds, cold_manifold, kept};
 use testkit::scenes::hulls;
 
 /// The share of the smaller radius that the two points of a contact may be apart across the normal.
@@ -104,7 +103,7 @@ fn contacts_on_triangles_keep_their_places() {
         for sides in [3, 8, 64] {
             let shape = prism(sides, 0.05);
             let dispatcher = IsaGjkDispatcher::default();
-            let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+            let mut manifolds: Vec<Manifold> = Vec::new();
             let mut workspace = None;
             let mut first = None;
             for _ in 0..50 {
@@ -113,14 +112,7 @@ fn contacts_on_triangles_keep_their_places() {
                 pose.translation += Vector::new(3.0, 0.0, -2.0);
                 let shapes = [&ground, &shape].map(|shape| &**shape);
                 dispatcher
-                    .contact_manifolds(
-                        &pose,
-                        shapes[0],
-                        shapes[1],
-                        PREDICTION,
-                        &mut manifolds,
-                        &mut workspace,
-                    )
+                    .update_manifolds(&pose, shapes, PREDICTION, &mut manifolds, &mut workspace)
                     .expect("supported");
                 let mut places: Vec<_> = manifolds.iter().map(places).collect();
                 places.retain(|places| !places.is_empty());

@@ -15,6 +15,7 @@ use testkit::generate::Rng;
 use testkit::memory::cold_manifold;
 
 use crate::counting::{allocations, bytes};
+use testkit::world::narrow_phase;
 
 const MIB: usize = 1 << 20;
 
@@ -97,7 +98,7 @@ fn debris_of_a_world_takes_no_memory() {
         let dispatcher = IsaGjkDispatcher::default();
         let mut rng = Rng::new(132);
         let mut world = PhysicsWorld {
-            narrow_phase: NarrowPhase::with_query_dispatcher(dispatcher),
+            narrow_phase: narrow_phase(&dispatcher),
             ..PhysicsWorld::default()
         };
         world.insert_collider(ColliderBuilder::new(round(&mut rng, 60, 3.0)), None);

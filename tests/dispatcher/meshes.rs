@@ -6,14 +6,15 @@
 
 use isa_gjk::{HullShape, IsaGjkDispatcher};
 use parry3d::math::{Pose, Real, Rotation, Vector};
+use parry3d::query::ContactManifold;
 use parry3d::query::details::NormalConstraints;
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{
     HeightField, HeightFieldFlags, Shape, SharedShape, TriMesh, TriMeshFlags, Triangle,
     TrianglePseudoNormals,
 };
 use parry3d::utils::Array2;
 use testkit::generate::Rng;
+use testkit::memory::{Manifold, UpdateManifolds};
 
 const CELLS: usize = 8;
 const PREDICTION: Real = 0.02;
@@ -97,9 +98,9 @@ fn roll() -> impl Iterator<Item = Pose> {
     })
 }
 
-type Manifolds = Vec<ContactManifold<(), ()>>;
+type Manifolds = Vec<Manifold>;
 
-fn deepest(manifold: &ContactManifold<(), ()>) -> Option<Real> {
+fn deepest(manifold: &Manifold) -> Option<Real> {
     let distances = manifold.points.iter().map(|point| point.dist);
     distances.reduce(Real::min)
 }
@@ -115,22 +116,18 @@ fn alone(
     let mut manifold = ContactManifold::new();
     let us = IsaGjkDispatcher::default();
     if swapped {
-        us.contact_manifold_convex_convex(
+        us.update_manifold(
             &place.inverse(),
-            hull,
-            triangle,
-            None,
-            normals,
+            [hull, triangle],
+            [None, normals],
             PREDICTION,
             &mut manifold,
         )
     } else {
-        us.contact_manifold_convex_convex(
+        us.update_manifold(
             place,
-            triangle,
-            hull,
-            normals,
-            None,
+            [triangle, hull],
+            [normals, None],
             PREDICTION,
             &mut manifold,
         )
@@ -154,16 +151,15 @@ fn each_triangle_has_the_contacts_that_it_has_alone() {
                     } else {
                         (place, &ground.shape, hull)
                     };
-                    us.contact_manifolds(
+                    us.update_manifolds(
                         &pos12,
-                        &**g1,
-                        &**g2,
+                        [&**g1, &**g2],
                         PREDICTION,
                         &mut manifolds,
                         &mut workspace,
                     )
                     .expect("supported");
-                    let id = |m: &ContactManifold<(), ()>| {
+                    let id = |m: &Manifold| {
                         if swapped { m.subshape2 } else { m.subshape1 }
                     };
                     for (triangle, shape, normals) in &ground.triangles {

@@ -5,10 +5,10 @@ use std::f32::consts::TAU;
 use glam::Vec3;
 use isa_gjk::{HullShape, IsaGjkDispatcher};
 use parry3d::math::{Pose, Rotation};
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::SharedShape;
 
 use crate::counting::allocations;
+use testkit::memory::{Manifold, UpdateManifolds};
 
 fn coin(sides: usize) -> Vec<Vec3> {
     let corner = |i: usize| {
@@ -21,12 +21,12 @@ fn coin(sides: usize) -> Vec<Vec3> {
 /// Allocations of 200 updates after 220 others. Contacts may keep their places for long, so it takes
 /// some updates until every buffer has grown.
 fn allocations_at_rest(shapes: [&SharedShape; 2], pose: impl Fn(usize) -> Pose) -> usize {
-    let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+    let mut manifolds: Vec<Manifold> = Vec::new();
     let dispatcher = IsaGjkDispatcher::default();
     let mut update = |frame| {
         let [a, b] = shapes;
         dispatcher
-            .contact_manifolds(&pose(frame), &**a, &**b, 0.02, &mut manifolds, &mut None)
+            .update_manifolds(&pose(frame), [&**a, &**b], 0.02, &mut manifolds, &mut None)
             .expect("supported");
         assert!(!manifolds[0].points.is_empty());
     };

@@ -13,10 +13,8 @@ use std::fmt::Debug;
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::query::details::ShapeCastOptions;
-use parry3d::query::{
-    DefaultQueryDispatcher, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
-};
-use testkit::memory::{Manifold, Memory};
+use parry3d::query::{DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher};
+use testkit::memory::{Manifold, Memory, UpdateManifolds};
 use testkit::shape_samples::{ShapeSample, poses, shape_samples};
 
 const PREDICTION: Real = 0.1;
@@ -51,17 +49,16 @@ fn parry_panics(first: &str, second: &str) -> bool {
 }
 
 fn contacts(
-    dispatcher: &impl PersistentQueryDispatcher<(), ()>,
+    dispatcher: &impl UpdateManifolds,
     pair: [&ShapeSample; 2],
     pose: &Pose,
     memory: &mut Memory,
 ) -> bool {
     let [first, second] = pair;
     dispatcher
-        .contact_manifolds(
+        .update_manifolds(
             pose,
-            &*first.shape,
-            &*second.shape,
+            [&*first.shape, &*second.shape],
             PREDICTION,
             &mut memory.manifolds,
             &mut memory.workspace,

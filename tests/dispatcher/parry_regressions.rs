@@ -7,10 +7,11 @@ use std::f32::consts::{FRAC_PI_4, FRAC_PI_6, SQRT_2, TAU};
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{
-    ClosestPoints, Contact, ContactManifold, PersistentQueryDispatcher, QueryDispatcher,
-    ShapeCastHit, ShapeCastOptions, ShapeCastStatus,
+    ClosestPoints, Contact, ContactManifold, QueryDispatcher, ShapeCastHit, ShapeCastOptions,
+    ShapeCastStatus,
 };
 use parry3d::shape::{Shape, SharedShape};
+use testkit::memory::{Manifold, UpdateManifolds};
 
 fn us() -> IsaGjkDispatcher {
     IsaGjkDispatcher::default()
@@ -319,10 +320,10 @@ fn issues_26_and_141_targets_and_still_objects() {
     assert!((time(-1.0, 0.5).expect("a hit") - 1.5).abs() < 1.0e-6);
 }
 
-fn manifold(pos12: &Pose, shapes: [&dyn Shape; 2], prediction: Real) -> ContactManifold<(), ()> {
+fn manifold(pos12: &Pose, shapes: [&dyn Shape; 2], prediction: Real) -> Manifold {
     let mut manifold = ContactManifold::new();
     let [g1, g2] = shapes;
-    us().contact_manifold_convex_convex(pos12, g1, g2, None, None, prediction, &mut manifold)
+    us().update_manifold(pos12, [g1, g2], [None, None], prediction, &mut manifold)
         .expect("supported");
     manifold
 }

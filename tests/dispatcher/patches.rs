@@ -9,13 +9,14 @@ use isa_gjk::IsaGjkDispatcher;
 use isa_gjk::query::{ContactId, ContactPatch, QueryError};
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::shape::SharedShape;
-use rapier3d::prelude::{ColliderBuilder, NarrowPhase, PhysicsWorld, RigidBodyBuilder};
+use rapier3d::prelude::{ColliderBuilder, PhysicsWorld, RigidBodyBuilder};
 use testkit::generate::{Rng, hull_of};
 use testkit::memory::Memory;
 use testkit::oracle::{regret, signed_distance};
 use testkit::pose::ExactPose;
 use testkit::rounded::{self, Rounded};
 use testkit::scenes::hulls;
+use testkit::world::ours;
 
 /// Of both sizes, borders and the offset.
 const EXACT: f64 = 1e-5;
@@ -420,7 +421,7 @@ fn ids_are_mirrored_with_the_shapes() {
 #[test]
 fn ids_of_a_resting_body_stay() {
     let mut world = PhysicsWorld {
-        narrow_phase: NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default()),
+        narrow_phase: ours(),
         ..PhysicsWorld::default()
     };
     world.integration_parameters.contact_recycling = false;

@@ -4,11 +4,11 @@
 use glam::{DQuat, DVec3};
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Real, Vector};
-use parry3d::query::{PersistentQueryDispatcher, QueryDispatcher};
+use parry3d::query::QueryDispatcher;
 use parry3d::shape::SharedShape;
 use testkit::cases::Hull;
 use testkit::generate::Rng;
-use testkit::memory::{Manifold, Memory, cold_manifold};
+use testkit::memory::{Manifold, Memory, UpdateManifolds, cold_manifold};
 use testkit::oracle::{Solid, regret, signed_distance};
 use testkit::pose::ExactPose;
 
@@ -151,7 +151,7 @@ impl Check<'_> {
             return;
         };
         let normals = ordered([manifold.local_n1, manifold.local_n2], swapped);
-        let points = |p: &parry3d::query::TrackedContact<()>| {
+        let points = |p: &parry3d::query::TrackedContact<u32>| {
             ordered([p.local_p1, p.local_p2], swapped).map(|p| p.as_dvec3())
         };
         let normals = normals.map(|n| n.as_dvec3());
@@ -305,16 +305,9 @@ fn a_rolling_ball_keeps_its_impulse() {
             let pose = Pose::translation(x, top(x), 0.0);
             let pose = if swapped { pose.inverse() } else { pose };
             let [s1, s2] = ordered([&floor, &ball], swapped);
-            PersistentQueryDispatcher::<(), u32>::contact_manifolds(
-                &dispatcher,
-                &pose,
-                &**s1,
-                &**s2,
-                0.02,
-                &mut manifolds,
-                &mut None,
-            )
-            .expect("supported");
+            dispatcher
+                .update_manifolds(&pose, [&**s1, &**s2], 0.02, &mut manifolds, &mut None)
+                .expect("supported");
             let [point] = &mut manifolds[0].points[..] else {
                 panic!("a ball has one contact")
             };

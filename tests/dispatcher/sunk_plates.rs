@@ -3,24 +3,25 @@
 
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::Pose;
-use parry3d::query::{ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher};
+use parry3d::query::DefaultQueryDispatcher;
 use parry3d::shape::SharedShape;
 use testkit::budget;
 use testkit::families;
 use testkit::generate::Rng;
+use testkit::memory::{Manifold, UpdateManifolds};
 
 /// Whether a contact pushes upwards what overlaps the mesh.
 fn is_pushed_out(
-    dispatcher: &impl PersistentQueryDispatcher<(), ()>,
+    dispatcher: &impl UpdateManifolds,
     shapes: [&SharedShape; 2],
     pose: &Pose,
 ) -> bool {
-    let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+    let mut manifolds: Vec<Manifold> = Vec::new();
     let [mesh, plate] = shapes;
     dispatcher
-        .contact_manifolds(pose, &**mesh, &**plate, 0.002, &mut manifolds, &mut None)
+        .update_manifolds(pose, [&**mesh, &**plate], 0.002, &mut manifolds, &mut None)
         .expect("supported");
-    let is_deep = |m: &ContactManifold<(), ()>| m.points.iter().any(|point| point.dist < 0.0);
+    let is_deep = |m: &Manifold| m.points.iter().any(|point| point.dist < 0.0);
     manifolds.iter().any(|m| m.local_n1.y > 0.99 && is_deep(m))
 }
 

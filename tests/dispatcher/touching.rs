@@ -266,7 +266,7 @@ impl Scene<'_> {
         memory.update(&us, &self.pose(), shapes, prediction as Real);
         memory.update(&us, &self.pose(), shapes, prediction as Real);
         let manifold = &memory.manifolds[0];
-        let contact = |p: &parry3d::query::TrackedContact<()>| {
+        let contact = |p: &parry3d::query::TrackedContact<u32>| {
             Contact::new(
                 p.local_p1,
                 p.local_p2,

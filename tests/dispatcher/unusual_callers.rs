@@ -10,15 +10,15 @@ use parry3d::mass_properties::MassProperties;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::NormalConstraints;
 use parry3d::query::{
-    ContactManifold, DefaultQueryDispatcher, PersistentQueryDispatcher, PointProjection,
-    PointQuery, QueryDispatcher, Ray, RayCast, RayIntersection,
+    ContactManifold, DefaultQueryDispatcher, PointProjection, PointQuery, QueryDispatcher, Ray,
+    RayCast, RayIntersection,
 };
 use parry3d::shape::{
     Ball, Cuboid, FeatureId, PolygonalFeature, PolygonalFeatureMap, Shape, ShapeType, SharedShape,
     SupportMap, TypedShape,
 };
 use testkit::generate::Rng;
-use testkit::memory::cold_manifold;
+use testkit::memory::{UpdateManifolds, cold_manifold};
 
 /// Asks the dispatcher about its shapes before it lets a normal pass.
 struct Asks {
@@ -54,19 +54,11 @@ fn a_query_within_a_query_is_answered() {
     };
     let outer = [hull(), hull()];
     let pose = Pose::translation(0.4, 0.3, 0.2);
-    let mut manifold = ContactManifold::<(), ()>::new();
+    let mut manifold = ContactManifold::new();
     for _ in 0..3 {
         let [a, b] = &outer;
         dispatcher
-            .contact_manifold_convex_convex(
-                &pose,
-                &**a,
-                &**b,
-                Some(&asks),
-                None,
-                0.1,
-                &mut manifold,
-            )
+            .update_manifold(&pose, [&**a, &**b], [Some(&asks), None], 0.1, &mut manifold)
             .expect("supported");
     }
     let alone = cold_manifold(&dispatcher, &pose, outer.each_ref(), 0.1).expect("supported");

@@ -6,8 +6,9 @@
 
 use isa_gjk::{IsaGjkDispatcher, Stage};
 use parry3d::math::{Pose, Real, Rotation, Vector};
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher, QueryDispatcher};
+use parry3d::query::QueryDispatcher;
 use testkit::generate::{Rng, hull_of};
+use testkit::memory::{Manifold, UpdateManifolds};
 
 const FRAMES: usize = 200;
 
@@ -31,12 +32,12 @@ fn searches(rng: &mut Rng) -> [u64; 2] {
         Pose::from_parts(1.99 * around, turn)
     };
     let dispatcher = IsaGjkDispatcher::default();
-    let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+    let mut manifolds: Vec<Manifold> = Vec::new();
     let mut touching = 0;
     for frame in 0..FRAMES {
         let pose = pose(frame);
         dispatcher
-            .contact_manifolds(&pose, &*a, &*b, 0.02, &mut manifolds, &mut None)
+            .update_manifolds(&pose, [&*a, &*b], 0.02, &mut manifolds, &mut None)
             .expect("supported");
         let depths = manifolds[0].points.iter().map(|point| point.dist);
         let Some(warm) = depths.reduce(Real::min) else {

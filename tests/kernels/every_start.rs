@@ -9,10 +9,10 @@ use isa_gjk::internals::support::{Polytope, Support, VertexId};
 use isa_gjk::internals::tolerance::{BOWL_LOSS, SUPPORT_TIE};
 use isa_gjk::{Hull, HullError, HullShape, IsaGjkDispatcher};
 use parry3d::math::Pose;
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::SharedShape;
 use testkit::divided::{Mesh, divided_block, divided_icosahedron};
 use testkit::generate::Rng;
+use testkit::memory::{Manifold, UpdateManifolds};
 
 fn build((points, triangles): &Mesh) -> Result<Hull, HullError> {
     let points = points.iter().map(|p| p.as_vec3()).collect();
@@ -212,11 +212,11 @@ fn a_slab_that_turns_over_keeps_its_contact() {
             let rotation = (DQuat::from_rotation_x(turn) * lying).as_quat();
             let pose = Pose::from_parts(Vec3::new(0.0, 0.49 + top, 0.0), rotation);
             IsaGjkDispatcher::default()
-                .contact_manifolds(&pose, &*ground, &*slab, 0.02, &mut manifolds, &mut None)
+                .update_manifolds(&pose, [&*ground, &*slab], 0.02, &mut manifolds, &mut None)
                 .expect("supported");
             let lowest = |p: &Vec3| pose.transform_point(*p).y - top;
             let lowest = points.iter().map(lowest).fold(f32::INFINITY, f32::min);
-            let found: &ContactManifold<(), ()> = &manifolds[0];
+            let found: &Manifold = &manifolds[0];
             let deepest = found.find_deepest_contact().map(|point| point.dist);
             let off = deepest.map(|deepest| (deepest - lowest).abs());
             assert!(

@@ -4,9 +4,9 @@
 //! slides along it, climbs steps and snaps to the ground. The same box walks through two equal
 //! worlds, of cuboids with rapier's dispatcher, and of hulls with ours.
 
-use isa_gjk::IsaGjkDispatcher;
 use rapier3d::control::{CharacterLength, KinematicCharacterController};
 use rapier3d::prelude::*;
+use testkit::world::ours;
 
 const DT: Real = 1.0 / 60.0;
 const OFFSET: Real = 0.02;
@@ -29,7 +29,7 @@ fn block(half: Vector, as_hull: bool) -> SharedShape {
 fn world(as_hulls: bool) -> PhysicsWorld {
     let mut world = PhysicsWorld::default();
     if as_hulls {
-        world.narrow_phase = NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default());
+        world.narrow_phase = ours();
     }
     let mut place = |half: Vector, pose: Pose| {
         world.insert_collider(

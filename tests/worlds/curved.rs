@@ -1,11 +1,10 @@
 //! Cylinders and cones at rest: lying cones, towers of coins and of barrels.
 
-use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::*;
 
 fn ours() -> PhysicsWorld {
     PhysicsWorld {
-        narrow_phase: NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default()),
+        narrow_phase: testkit::world::ours(),
         ..PhysicsWorld::default()
     }
 }

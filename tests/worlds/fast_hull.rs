@@ -4,9 +4,9 @@
 //! solver uses points far beyond the prediction distance if their velocities would close the gap
 //! within the step. A manifold that keeps only its near points lets the hull turn and slip through.
 
-use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::*;
 use testkit::generate::Rng;
+use testkit::world::ours;
 
 fn plate() -> SharedShape {
     let corners: Vec<Vector> = (0..8)
@@ -24,7 +24,7 @@ fn a_fast_hull_does_not_pass_a_thin_plate() {
     for vertices in [8, 16, 30, 250] {
         let shape = rng.hull(vertices, 0.9).shape;
         let mut world = PhysicsWorld {
-            narrow_phase: NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default()),
+            narrow_phase: ours(),
             ..PhysicsWorld::default()
         };
         world.insert(RigidBodyBuilder::fixed(), ColliderBuilder::new(plate()));

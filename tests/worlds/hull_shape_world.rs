@@ -1,15 +1,16 @@
 //! Worlds of `HullShape`s live, rest and are saved as worlds of plain hulls are.
 
-use isa_gjk::{HullShape, IsaGjkDispatcher};
+use isa_gjk::HullShape;
 use rapier3d::prelude::*;
 use testkit::generate::{Rng, prepared};
+use testkit::world::ours;
 
 const PILE: usize = 36;
 
 /// `count` hulls dropped between four walls onto a floor.
 fn pile(shapes: &[SharedShape], count: usize) -> PhysicsWorld {
     let mut world = PhysicsWorld {
-        narrow_phase: NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default()),
+        narrow_phase: ours(),
         ..PhysicsWorld::default()
     };
     let floor = ColliderBuilder::cuboid(4.0, 0.5, 4.0).translation(Vector::new(0.0, -0.5, 0.0));
@@ -107,7 +108,7 @@ fn a_coin_lies_flat_on_a_half_space() {
 #[test]
 fn continuous_collision_detection_stops_a_fast_hull() {
     let mut world = PhysicsWorld {
-        narrow_phase: NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default()),
+        narrow_phase: ours(),
         ..PhysicsWorld::default()
     };
     let plate: Vec<Vector> = (0..8)

@@ -5,9 +5,10 @@ use std::f32::consts::{PI, TAU};
 
 use isa_gjk::PreparedShapes;
 use isa_gjk::{HullShape, IsaGjkDispatcher};
-use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Compound, CompoundFlags};
 use rapier3d::prelude::*;
+use testkit::memory::{Manifold, UpdateManifolds};
+use testkit::world::ours;
 
 /// A flat square in y = 0 of `cells` by `cells` squares of two triangles each.
 fn flat_mesh(corner: Vector, side: Real, cells: u32) -> SharedShape {
@@ -45,9 +46,9 @@ fn wheel(sides: usize, radius: Real, half_width: Real) -> SharedShape {
 
 /// The depth of the deepest contact of a mesh and a hull whose normal is upwards.
 fn depth_upwards(mesh: &SharedShape, hull: &SharedShape, pose: Pose) -> Option<Real> {
-    let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+    let mut manifolds: Vec<Manifold> = Vec::new();
     IsaGjkDispatcher::default()
-        .contact_manifolds(&pose, &**mesh, &**hull, 0.002, &mut manifolds, &mut None)
+        .update_manifolds(&pose, [&**mesh, &**hull], 0.002, &mut manifolds, &mut None)
         .expect("supported");
     let upwards = manifolds.iter().filter(|m| m.local_n1.y > 0.999);
     let depths = upwards.flat_map(|m| m.points.iter().map(|point| -point.dist));
@@ -91,7 +92,7 @@ fn ride(
     steps: usize,
 ) -> Ride {
     let mut world = PhysicsWorld {
-        narrow_phase: NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default()),
+        narrow_phase: ours(),
         ..PhysicsWorld::default()
     };
     let collider = |shape: &SharedShape| ColliderBuilder::new(shape.clone()).friction(friction);

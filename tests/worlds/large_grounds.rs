@@ -1,9 +1,9 @@
 //! Small bodies on one hull of 500 m to 20 km. With rapier's default, 22 of the 48 hulls stay awake, all of
 //! them on the disc, and stand up to 24 mm too low.
 
-use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::*;
 use testkit::scenes::hulls;
+use testkit::world::ours;
 
 /// Steps until everything must sleep.
 const STEPS: usize = 240;
@@ -60,7 +60,7 @@ struct Landed {
 /// Drops a body from 2 cm above the ground, at this share of the way to the ground's side.
 fn land(ground: &SharedShape, half_width: Real, share: Real, body: &Body) -> Landed {
     let mut world = PhysicsWorld {
-        narrow_phase: NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default()),
+        narrow_phase: ours(),
         ..PhysicsWorld::default()
     };
     let place = Vector::new(0.0, -0.5 * THICKNESS, 0.0);

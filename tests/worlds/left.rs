@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use isa_gjk::{IsaGjkDispatcher, Left};
 use log::{LevelFilter, Log, Metadata, Record};
 use rapier3d::prelude::*;
+use testkit::world::narrow_phase;
 
 /// What this crate says in each thread.
 struct Listener;
@@ -35,7 +36,7 @@ fn unchecked(corners: Vec<Vector>, faces: &[[u32; 3]]) -> SharedShape {
 /// Ten bodies of a shape over the ground.
 fn world_of(shape: &SharedShape, dispatcher: &IsaGjkDispatcher) -> PhysicsWorld {
     let mut world = PhysicsWorld {
-        narrow_phase: NarrowPhase::with_query_dispatcher(dispatcher.clone()),
+        narrow_phase: narrow_phase(dispatcher),
         ..PhysicsWorld::default()
     };
     let ground = ColliderBuilder::cuboid(20.0, 0.5, 20.0).translation(Vector::new(0.0, -0.5, 0.0));

@@ -1,7 +1,6 @@
 //! Logs stacked in rows. With one contact for each two capsules, as the default makes them, they never
 //! rest and sink into each other. Cylinders rest, but twice as late, and deeper in each other.
 
-use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::*;
 
 const RADIUS: Real = 0.1;
@@ -41,7 +40,7 @@ fn stack(mut world: PhysicsWorld, log: &ColliderBuilder) -> (Option<usize>, Real
 
 fn ours() -> PhysicsWorld {
     PhysicsWorld {
-        narrow_phase: NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default()),
+        narrow_phase: testkit::world::ours(),
         ..PhysicsWorld::default()
     }
 }

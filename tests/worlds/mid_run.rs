@@ -10,7 +10,7 @@ use isa_gjk::{HullShape, IsaGjkDispatcher};
 use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher};
 use rapier3d::prelude::*;
 use testkit::generate::Rng;
-use testkit::world::{Ground, check_places, deepest, mixed};
+use testkit::world::{Ground, check_places, deepest, mixed, narrow_phase};
 
 const BODIES: usize = 28;
 
@@ -72,7 +72,7 @@ impl Two {
     fn new(shapes: [SharedShape; 2]) -> Self {
         let dispatcher = IsaGjkDispatcher::default();
         let mut world = PhysicsWorld {
-            narrow_phase: NarrowPhase::with_query_dispatcher(dispatcher.clone()),
+            narrow_phase: narrow_phase(&dispatcher),
             ..PhysicsWorld::default()
         };
         world.integration_parameters.contact_recycling = false;

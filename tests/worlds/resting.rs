@@ -12,6 +12,7 @@ use testkit::quality::{Observer, Quality};
 use testkit::scanned::noisy_box;
 use testkit::scenes::hulls::{RADIUS, cuboid, prism};
 use testkit::scenes::{self, HullSource, Scene, SceneParams, World};
+use testkit::world;
 
 fn params(hulls: HullSource, bodies: u32) -> SceneParams {
     SceneParams {
@@ -241,7 +242,7 @@ fn triangulated_floor(flags: TriMeshFlags) -> ColliderBuilder {
 /// Rapier's own narrow phase, or ours.
 fn narrow_phase(ours: bool) -> NarrowPhase {
     if ours {
-        NarrowPhase::with_query_dispatcher(IsaGjkDispatcher::default())
+        world::ours()
     } else {
         NarrowPhase::new()
     }

@@ -9,7 +9,7 @@ use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::*;
 use testkit::generate::Rng;
 use testkit::memory::cold_manifold;
-use testkit::world::{Ground, mixed, state};
+use testkit::world::{Ground, mixed, narrow_phase, state};
 
 /// Compounds, meshes and single hulls.
 #[test]
@@ -17,7 +17,7 @@ fn worlds_go_the_same_way() {
     for ground in Ground::ALL {
         let dispatchers = [(); 2].map(|()| IsaGjkDispatcher::default());
         let mut worlds = dispatchers.each_ref().map(|dispatcher| {
-            let narrow_phase = NarrowPhase::with_query_dispatcher(dispatcher.clone());
+            let narrow_phase = narrow_phase(dispatcher);
             mixed(ground, 28, narrow_phase)
         });
         for step in 0..200 {

@@ -24,9 +24,9 @@ impl World {
     /// unchanged during a step.
     pub fn new(dispatcher: Option<IsaGjkDispatcher>, unchanged_shapes: bool) -> Self {
         let told = dispatcher.clone().filter(|_| unchanged_shapes);
-        let narrow_phase = dispatcher.map_or_else(NarrowPhase::new, |dispatcher| {
-            NarrowPhase::with_query_dispatcher(dispatcher)
-        });
+        let narrow_phase = dispatcher
+            .as_ref()
+            .map_or_else(NarrowPhase::new, crate::world::narrow_phase);
         Self {
             physics: PhysicsWorld {
                 narrow_phase,
