@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::body::Body;
 use super::query::{CurvedAnswer, CurvedQuery};
+use super::surface_pieces::SurfacePieces;
 use crate::tuning::STILL;
 
 /// The signed distance of cores, proved up to the tolerance.
@@ -15,7 +15,7 @@ pub(super) struct AtRest {
     pub on_1: DVec3,
 }
 
-impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
+impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
     /// The answer by the flat or ruled side that gave the last normals, if the contacts hardly moved. The normals
     /// are outward, each in the frame of its shape.
     pub(super) fn at_rest(&mut self, [last_1, last_2]: [DVec3; 2]) -> Option<CurvedAnswer> {

@@ -2,10 +2,10 @@
 
 use glam::DVec3;
 
-use super::body::Body;
 use super::outline::Flat;
 use super::patch::{ContactPlace, Patch};
 use super::piece::{Generator, Piece};
+use super::surface_pieces::SurfacePieces;
 use crate::query::{Feature, cone_contains_ball};
 use crate::support::Cso;
 use crate::tolerance::SAME_NORMAL;
@@ -18,7 +18,7 @@ impl Patch {
     /// If the cores are apart, two of their points bound the distance. If they overlap, a ball inside the
     /// difference bounds the depth: it lies under a disc in the difference, or it is the sum of balls inside
     /// both cores that touch their surfaces at a place of contact.
-    pub(super) fn proved<A: Body, B: Body>(
+    pub(super) fn proved<A: SurfacePieces, B: SurfacePieces>(
         &self,
         cso: &Cso<'_, A, B>,
         separation: f64,
@@ -29,7 +29,7 @@ impl Patch {
             .then_some(nearest)
     }
 
-    fn proves<A: Body, B: Body>(
+    fn proves<A: SurfacePieces, B: SurfacePieces>(
         &self,
         cso: &Cso<'_, A, B>,
         nearest: &ContactPlace,

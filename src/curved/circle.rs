@@ -3,10 +3,10 @@
 
 use glam::DVec3;
 
-use super::body::{Body, Ruling};
 use super::curvature::Curvature;
 use super::piece::across;
 use super::separation::NormalSeparation;
+use super::surface_pieces::{Ruling, SurfacePieces};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex};
 use crate::tolerance::SETTLED_ANGLE;
@@ -55,7 +55,7 @@ impl NormalCircle {
 /// The greatest separation along normals that satisfy a ruling, close to the normal `about` and its extreme
 /// vertex `near`. The extreme vertex gives the slope of the separation, and Newton's method finds where it
 /// vanishes. `None` if a step is too long or the extreme point does not move smoothly.
-pub(super) fn along_ruling<A: Body, B: Body>(
+pub(super) fn along_ruling<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     ruling: &Ruling,
     (about, near): (DVec3, &CsoVertex),

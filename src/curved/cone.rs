@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::body::{Body, CircularEdge, Ruling};
 use super::piece::{FlatSide, Generator, Piece, RuledSurface, TangentBall};
 use super::round;
+use super::surface_pieces::{CircularEdge, Ruling, SurfacePieces};
 use crate::primitive::Cone;
 use crate::stats::Cost;
 use crate::support::VertexId;
@@ -35,7 +35,7 @@ impl Cone {
     }
 }
 
-impl Body for Cone {
+impl SurfacePieces for Cone {
     fn flat(&self, dir: DVec3, _: VertexId) -> Option<FlatSide> {
         (dir.y < 0.0).then(|| self.base(0.0))
     }

@@ -1,4 +1,7 @@
 //! The choice of the places of a patch that become contacts.
+//!
+//! The rule is that of `manifold/reduce.rs`. That one works in f32 on four corners at once, which only pays for the
+//! many corners of polygons. A curved patch has few places, in f64, and each comes with its points and features.
 
 use glam::{DVec2, DVec3};
 
@@ -42,17 +45,17 @@ pub fn contacts(
 }
 
 /// Places in the contact plane, relative to one of them.
-struct Field<'a> {
+struct PlanarPlaces<'a> {
     places: &'a [ContactPlace],
     max_distance: f64,
     origin: DVec3,
     axes: [DVec3; 2],
 }
 
-impl<'a> Field<'a> {
+impl<'a> PlanarPlaces<'a> {
     fn at(&self, place: &ContactPlace) -> DVec2 {
-        let way = place.on_1 - self.origin;
-        DVec2::from(self.axes.map(|axis| way.dot(axis)))
+        let offset = place.on_1 - self.origin;
+        DVec2::from(self.axes.map(|axis| offset.dot(axis)))
     }
 
     /// The place within reach with the greatest measure, if that is above `least`.
@@ -76,6 +79,7 @@ fn added_area(p: DVec2, a: DVec2, b: DVec2) -> f64 {
     beyond_ab.max(beyond_bo)
 }
 
+/// The contacts chosen so far.
 struct Chosen {
     same: f64,
     normal: DVec3,
@@ -93,8 +97,8 @@ impl Chosen {
 
     fn is_new(&self, place: &ContactPlace) -> bool {
         let is_there = |other: &ContactPlace| {
-            let way = place.on_1 - other.on_1;
-            way.reject_from_normalized(self.normal).length() <= self.same
+            let offset = place.on_1 - other.on_1;
+            offset.reject_from_normalized(self.normal).length() <= self.same
         };
         !self.places.iter().flatten().any(is_there)
     }
@@ -104,23 +108,23 @@ impl Chosen {
     fn spread(&mut self, places: &[ContactPlace], max_distance: f64) {
         let Some(first) = self.places[0] else { return };
         let u = self.normal.any_orthonormal_vector();
-        let field = Field {
+        let projected = PlanarPlaces {
             places,
             max_distance,
             origin: first.on_1,
             axes: [u, self.normal.cross(u)],
         };
-        let Some(far) = field.farthest(self.same * self.same, |p| p.length_squared()) else {
+        let Some(far) = projected.farthest(self.same * self.same, |p| p.length_squared()) else {
             return;
         };
-        let line = field.at(far);
+        let line = projected.at(far);
         let least = self.same * line.length();
-        let sides = [1.0, -1.0].map(|sign| field.farthest(least, |p| sign * line.perp_dot(p)));
+        let sides = [1.0, -1.0].map(|sign| projected.farthest(least, |p| sign * line.perp_dot(p)));
         self.push(far);
         sides.into_iter().flatten().for_each(|side| self.push(side));
         if let [Some(side), None] | [None, Some(side)] = sides {
-            let beyond = |p| added_area(p, line, field.at(side));
-            if let Some(last) = field.farthest(least, beyond)
+            let beyond = |p| added_area(p, line, projected.at(side));
+            if let Some(last) = projected.farthest(least, beyond)
                 && self.is_new(last)
             {
                 self.push(last);

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::body::{Body, CircularEdge};
 use super::separation::NormalSeparation;
+use super::surface_pieces::{CircularEdge, SurfacePieces};
 use crate::support::Cso;
 use crate::tolerance::SAME_NORMAL;
 
@@ -13,7 +13,10 @@ pub(super) struct Curvature([(DVec3, f64); 2]);
 
 impl Curvature {
     /// `None` if a flat side is perpendicular to the normal.
-    pub fn of<A: Body, B: Body>(cso: &Cso<'_, A, B>, at: &NormalSeparation) -> Option<Self> {
+    pub fn of<A: SurfacePieces, B: SurfacePieces>(
+        cso: &Cso<'_, A, B>,
+        at: &NormalSeparation,
+    ) -> Option<Self> {
         let outward_2 = -cso.pose.direction_to_2(at.normal);
         let of_first = bend(cso.shape_1.rim(at.normal), at.normal)?;
         let (tangent, weight) = bend(cso.shape_2.rim(outward_2), outward_2)?;

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::body::{Body, CircularEdge, Ruling};
 use super::piece::{FlatSide, Generator, Piece, RuledSurface, TangentBall};
 use super::round;
+use super::surface_pieces::{CircularEdge, Ruling, SurfacePieces};
 use crate::primitive::Cylinder;
 use crate::stats::Cost;
 use crate::support::VertexId;
@@ -25,7 +25,7 @@ impl Cylinder {
     }
 }
 
-impl Body for Cylinder {
+impl SurfacePieces for Cylinder {
     fn flat(&self, dir: DVec3, _: VertexId) -> Option<FlatSide> {
         Some(self.cap(dir, 0.0))
     }

@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use super::outline::circle_crossings;
-use super::patch::{Patch, PiecePoint, by_side};
+use super::patch::Patch;
 use super::piece::{FlatSide, Outline, Piece, across};
-use super::place::Spot;
+use super::place::{PiecePoint, Spot, by_side};
 use crate::tolerance::{LEVEL, ON_OUTLINE};
 use crate::tuning::SMALL_SHIFT;
 
@@ -136,8 +136,8 @@ impl Patch {
         // The circle within the lens.
         let inner = 0.5 * (r1 + r2 - distance);
         if inner >= (1.0 - SMALL_SHIFT) * least {
-            let way = across / distance;
-            let middle = c1 + way * (r1 - inner);
+            let toward = across / distance;
+            let middle = c1 + toward * (r1 - inner);
             self.add_disc(0, flats[0], (middle, inner), false);
         } else if inner > 0.0 {
             self.add_lens(flats, circles, across / distance, distance);

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::patch::{Patch, PiecePoint, by_side};
+use super::patch::Patch;
 use super::piece::Generator;
-use super::place::Spot;
+use super::place::{PiecePoint, Spot, by_side};
 use crate::tolerance::ON_OUTLINE;
 use crate::tuning::{SHORT_LINE, SIDE_BY_SIDE_SINE};
 

@@ -7,10 +7,9 @@
 //! it from above ([`certificate`]). GJK and EPA find a normal to start from, and give the answer if none of
 //! these normals can be proved ([`search`]).
 //!
-//! To add a convex shape, implement [`Body`]: its support mapping and the pieces of its surface.
+//! To add a convex shape, implement [`SurfacePieces`]: its support mapping and the pieces of its surface.
 
 mod at_rest;
-mod body;
 mod certificate;
 mod circle;
 mod cone;
@@ -34,9 +33,10 @@ mod search;
 mod seeds;
 mod separation;
 mod stationary;
+mod surface_pieces;
 
-pub use body::{Body, CircularEdge, Ruling};
 pub use contacts::contacts;
 pub use patch::{ContactPlace, Patch};
 pub use piece::{FlatSide, Piece};
 pub use query::{CurvedAnswer, CurvedQuery, CurvedScratch, Hint};
+pub use surface_pieces::{CircularEdge, Ruling, SurfacePieces};

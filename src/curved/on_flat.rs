@@ -3,16 +3,16 @@
 use glam::DVec3;
 
 use super::at_rest::AtRest;
-use super::body::Body;
 use super::piece::FlatSide;
 use super::query::CurvedQuery;
+use super::surface_pieces::SurfacePieces;
 use crate::query::{LastContacts, cone_contains_ball};
 use crate::stats::Cost;
 use crate::support::Cso;
 use crate::tolerance::SAME_NORMAL;
 use crate::tuning::FLUSH_TIE;
 
-impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
+impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
     /// What the flat side of the first shape with this normal proves.
     pub(super) fn on_first_flat(&mut self, last: &LastContacts, normal: DVec3) -> Option<AtRest> {
         let tolerance = self.tolerance();
@@ -47,7 +47,7 @@ impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
 }
 
 /// The flat side of a shape that has this normal.
-fn flat_side(shape: &impl Body, normal: DVec3, cost: &mut Cost) -> Option<FlatSide> {
+fn flat_side(shape: &impl SurfacePieces, normal: DVec3, cost: &mut Cost) -> Option<FlatSide> {
     let (_, vertex) = shape.support(normal, shape.start_vertex(normal), cost);
     let flat = shape.flat(normal, vertex)?;
     (flat.normal.distance_squared(normal) < SAME_NORMAL * SAME_NORMAL).then_some(flat)
@@ -62,7 +62,7 @@ struct OnFlatSide<'a, 'c, A, B> {
     separation: f64,
 }
 
-impl<'a, 'c, A: Body, B: Body> OnFlatSide<'a, 'c, A, B> {
+impl<'a, 'c, A: SurfacePieces, B: SurfacePieces> OnFlatSide<'a, 'c, A, B> {
     fn new(cso: &'a Cso<'c, A, B>, flat: FlatSide, cost: &mut Cost) -> Self {
         let towards = -cso.pose.direction_to_2(flat.normal);
         let start = cso.shape_2.start_vertex(towards);

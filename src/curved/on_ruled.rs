@@ -3,14 +3,14 @@
 use glam::DVec3;
 
 use super::at_rest::AtRest;
-use super::body::{Body, Ruling};
 use super::circle::along_ruling;
 use super::query::CurvedQuery;
+use super::surface_pieces::{Ruling, SurfacePieces};
 use crate::query::LastContacts;
 use crate::support::{Cso, CsoVertex, VertexId};
 use crate::tuning::{FLUSH_TIE, SMALL_TURN};
 
-impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
+impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
     /// What a line of the second shape and a line or the extreme point of the first one prove, along the normal that
     /// suits the ruled side of the second one.
     pub(super) fn on_ruled_side(

@@ -26,9 +26,9 @@ impl Flat<'_> {
         p + self.along * self.height(p)
     }
 
-    /// Whether a point is over the side, up to rounding.
-    pub fn is_under(&self, p: DVec3) -> bool {
-        self.inset(p).is_some_and(|inset| inset >= 0.0)
+    /// Whether a point is over or under the side, up to rounding.
+    pub fn covers(&self, p: DVec3) -> bool {
+        self.inset(p).is_some()
     }
 
     /// The distance from the outline of a point that is projected into the plane. It is enlarged by what

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::patch::{ContactPlace, Patch, PiecePoint, by_side};
+use super::patch::Patch;
 use super::piece::Piece;
-use super::place::Spot;
+use super::place::{ContactPlace, PiecePoint, Spot, by_side};
 use crate::tolerance::ON_OUTLINE;
 
 impl Patch {
@@ -30,7 +30,7 @@ impl Patch {
         match &self.pieces[side] {
             Piece::Flat(_) => {
                 let flat = self.flat(side)?;
-                flat.is_under(p).then(|| flat.height(p))
+                flat.covers(p).then(|| flat.height(p))
             }
             Piece::Line(line) => {
                 let outward = self.outward(side);

@@ -4,10 +4,10 @@ use std::ops::RangeInclusive;
 
 use glam::DVec3;
 
-use super::body::Body;
 use super::outline::Flat;
 use super::piece::{Outline, Piece};
-use super::place::Spot;
+use super::place::{PiecePoint, Spot};
+use super::surface_pieces::SurfacePieces;
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, VertexId};
 use crate::tolerance::SAME_GAP;
@@ -64,22 +64,6 @@ impl Default for Patch {
     }
 }
 
-/// A point of one of the two pieces, and its spot on both.
-#[derive(Clone, Copy)]
-pub(super) struct PiecePoint {
-    pub at: DVec3,
-    pub spots: [Spot; 2],
-}
-
-/// Puts two values in the order of the shapes. The first one belongs to the shape `side`.
-pub(super) fn by_side<T>(side: usize, [mine, other]: [T; 2]) -> [T; 2] {
-    if side == 0 {
-        [mine, other]
-    } else {
-        [other, mine]
-    }
-}
-
 impl Patch {
     /// Starts a new patch along `normal`, with `extreme` as its extreme vertex.
     pub(super) fn aim(&mut self, normal: DVec3, extreme: &CsoVertex) {
@@ -97,7 +81,7 @@ impl Patch {
     }
 
     /// Finds the pieces of the cores.
-    pub(super) fn find_cores<A: Body, B: Body>(&mut self, cso: &Cso<'_, A, B>) {
+    pub(super) fn find_cores<A: SurfacePieces, B: SurfacePieces>(&mut self, cso: &Cso<'_, A, B>) {
         self.find_pieces(cso, [0.0; 2]);
         self.found = Found::Pieces;
     }
@@ -118,7 +102,7 @@ impl Patch {
     }
 
     /// Finds the places along `normal`.
-    pub fn find<A: Body, B: Body>(
+    pub fn find<A: SurfacePieces, B: SurfacePieces>(
         &mut self,
         cso: &Cso<'_, A, B>,
         normal: DVec3,
@@ -131,7 +115,11 @@ impl Patch {
     /// Finds all places along the normal of the last answer, unless they are known. The deepest place of
     /// rounded shapes is that of their cores, moved along the contact normal. The other places lie on pieces
     /// that are moved along their own normals.
-    pub fn complete<A: Body, B: Body>(&mut self, cso: &Cso<'_, A, B>, border_radii: [f64; 2]) {
+    pub fn complete<A: SurfacePieces, B: SurfacePieces>(
+        &mut self,
+        cso: &Cso<'_, A, B>,
+        border_radii: [f64; 2],
+    ) {
         if self.found == Found::All {
             return;
         }
@@ -155,7 +143,11 @@ impl Patch {
         self.found = Found::All;
     }
 
-    fn find_around_cores<A: Body, B: Body>(&mut self, cso: &Cso<'_, A, B>, border_radii: [f64; 2]) {
+    fn find_around_cores<A: SurfacePieces, B: SurfacePieces>(
+        &mut self,
+        cso: &Cso<'_, A, B>,
+        border_radii: [f64; 2],
+    ) {
         let normal = self.normal;
         let separation = -normal.dot(self.extreme.w);
         let limit = separation + SAME_GAP * cso.min_radius();
@@ -177,7 +169,11 @@ impl Patch {
         }
     }
 
-    fn find_pieces<A: Body, B: Body>(&mut self, cso: &Cso<'_, A, B>, border_radii: [f64; 2]) {
+    fn find_pieces<A: SurfacePieces, B: SurfacePieces>(
+        &mut self,
+        cso: &Cso<'_, A, B>,
+        border_radii: [f64; 2],
+    ) {
         let [corners_1, corners_2] = &mut self.corners;
         corners_1.clear();
         corners_2.clear();

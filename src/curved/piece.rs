@@ -58,7 +58,7 @@ pub struct Generator {
 /// place along that line.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TangentBall {
-    /// The growth of the radius over the whole line, from either end.
+    /// How much the radius grows over the whole line, from zero at either end.
     pub growth: [f64; 2],
     /// An upper bound of the radius.
     pub most: f64,

@@ -37,6 +37,22 @@ pub(super) enum Spot {
     End(usize),
 }
 
+/// A point of one of the two pieces, and its spot on both.
+#[derive(Clone, Copy)]
+pub(super) struct PiecePoint {
+    pub at: DVec3,
+    pub spots: [Spot; 2],
+}
+
+/// Puts two values in the order of the shapes. The first one belongs to the shape `side`.
+pub(super) fn by_side<T>(side: usize, [mine, other]: [T; 2]) -> [T; 2] {
+    if side == 0 {
+        [mine, other]
+    } else {
+        [other, mine]
+    }
+}
+
 /// Crossings and ends are numbered after the sectors of circles.
 const FIRST_CROSSING: usize = 16;
 const FIRST_END: usize = 32;

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::body::{Body, CircularEdge, Ruling};
 use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall, across};
+use super::surface_pieces::{CircularEdge, Ruling, SurfacePieces};
 use crate::primitive::nearest_share;
 use crate::query::inset;
 use crate::stats::Cost;
@@ -11,7 +11,7 @@ use crate::support::{Polytope, VertexId};
 use crate::tolerance::KEPT_ANGLE_COS;
 use crate::tuning::EDGE_ON;
 
-impl<P: Polytope> Body for P {
+impl<P: Polytope> SurfacePieces for P {
     fn flat(&self, dir: DVec3, vertex: VertexId) -> Option<FlatSide> {
         let face = self.face_at_vertex(vertex, dir);
         let normal = self.face_normal(face);

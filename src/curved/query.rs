@@ -4,11 +4,11 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::body::Body;
 use super::patch::Patch;
 use super::rim_edge;
 use super::separation::NormalSeparation;
 use super::stationary;
+use super::surface_pieces::SurfacePieces;
 use crate::epa::EpaScratch;
 use crate::gjk::SeparatingAxis;
 use crate::query::{LastContacts, Start};
@@ -78,7 +78,7 @@ pub struct CurvedQuery<'a, 'c, A, B> {
     pub cost: &'a mut Cost,
 }
 
-impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
+impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
     /// The answer, and the stage that found it. `None` if the pair is not finite or has no volume.
     pub fn run(&mut self, hint: Hint) -> Option<(CurvedAnswer, Stage)> {
         if self.cso.are_spheres_apart(self.max_distance) {

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use super::body::{Body, CircularEdge};
 use super::separation::NormalSeparation;
+use super::surface_pieces::{CircularEdge, SurfacePieces};
 use crate::support::{Cso, VertexId};
 use crate::tolerance::SAME_NORMAL;
 
@@ -12,7 +12,7 @@ use crate::tolerance::SAME_NORMAL;
 ///
 /// The disc within the rim, swept along the edge, lies in the difference. It is an elliptic cylinder with
 /// slanted ends. The depth is proved if this cylinder contains the ball with the depth as radius.
-pub(super) fn proved_crossing<A: Body, B: Body>(
+pub(super) fn proved_crossing<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
     tolerance: f64,
@@ -48,7 +48,7 @@ struct Sweep {
 impl Sweep {
     /// The rim of the first shape and the edge of the second one that are extreme along a normal: at the point
     /// `on_rim`, and at the vertex `vertex_2`.
-    fn of_first_rim<A: Body, B: Body>(
+    fn of_first_rim<A: SurfacePieces, B: SurfacePieces>(
         cso: &Cso<'_, A, B>,
         normal: DVec3,
         on_rim: DVec3,

@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 
 use glam::DVec3;
 
-use super::body::Body;
 use super::query::{CurvedAnswer, CurvedQuery, CurvedScratch, apart};
 use super::separation::NormalSeparation;
+use super::surface_pieces::SurfacePieces;
 use crate::epa::{self, DepthSearch};
 use crate::gjk::{self, Outcome};
 use crate::query::{Start, moved_apart};
@@ -15,7 +15,7 @@ use crate::stats::Stage;
 use crate::tolerance::{FINE_GAP, SAME_GAP};
 use crate::tuning::COARSE_GAP;
 
-impl<A: Body, B: Body> CurvedQuery<'_, '_, A, B> {
+impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
     /// A coarse search for the distance leads to the pieces in contact. If they do not prove the answer, a
     /// fine search finds it. `None` if the cores touch or overlap.
     pub(super) fn by_gjk(

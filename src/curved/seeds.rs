@@ -20,7 +20,7 @@ impl Patch {
                     ..
                 }) => {
                     let (u, v) = normal.any_orthonormal_pair();
-                    let rim = [u, v, -u, -v].map(|way| *center + way * *radius);
+                    let rim = [u, v, -u, -v].map(|outward| *center + outward * *radius);
                     differences.extend(rim.map(|at| self.difference(side, at, id)));
                 }
                 Piece::Flat(_) => {

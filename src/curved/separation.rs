@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::body::Body;
+use super::surface_pieces::SurfacePieces;
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex};
 
@@ -16,7 +16,7 @@ pub(super) struct NormalSeparation {
 
 impl NormalSeparation {
     /// The separation along a unit vector. Climbs start at the vertices of `near`, found along another one.
-    pub fn along<A: Body, B: Body>(
+    pub fn along<A: SurfacePieces, B: SurfacePieces>(
         cso: &Cso<'_, A, B>,
         normal: DVec3,
         near: &CsoVertex,

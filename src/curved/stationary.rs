@@ -3,17 +3,17 @@
 
 use glam::{DVec2, DVec3};
 
-use super::body::{Body, Ruling};
 use super::circle::along_ruling;
 use super::curvature::Curvature;
 use super::separation::NormalSeparation;
+use super::surface_pieces::{Ruling, SurfacePieces};
 use crate::stats::Cost;
 use crate::support::Cso;
 use crate::tolerance::{PARALLEL_AXES, SETTLED_ANGLE};
 use crate::tuning::{LONGEST_STEP, MAX_NEWTON_STEPS, SMALL_TURN};
 
 /// Of the flat sides whose normal is close to the one at hand, the normal with the greatest separation.
-pub(super) fn near_flat<A: Body, B: Body>(
+pub(super) fn near_flat<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
     cost: &mut Cost,
@@ -22,7 +22,7 @@ pub(super) fn near_flat<A: Body, B: Body>(
 }
 
 /// Of the flat sides at the extreme vertices, the normal with the greatest separation.
-pub(super) fn flat<A: Body, B: Body>(
+pub(super) fn flat<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
     cost: &mut Cost,
@@ -30,7 +30,7 @@ pub(super) fn flat<A: Body, B: Body>(
     flat_within(cso, at, f64::INFINITY, cost)
 }
 
-fn flat_within<A: Body, B: Body>(
+fn flat_within<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
     turn: f64,
@@ -54,7 +54,7 @@ fn is_near(ruling: &Ruling, about: DVec3) -> bool {
 }
 
 /// The normal with the greatest separation that satisfies two rulings, one of each shape.
-pub(super) fn ruled<A: Body, B: Body>(
+pub(super) fn ruled<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
     cost: &mut Cost,
@@ -63,7 +63,7 @@ pub(super) fn ruled<A: Body, B: Body>(
     let of_first = cso.shape_1.rulings(at.normal, at.extreme.ids[0]);
     for first in of_first.filter(|ruling| is_near(ruling, at.normal)) {
         for second in rulings_2(cso, at).filter(|ruling| is_near(ruling, at.normal)) {
-            if let Some(normal) = suiting_both(&first, &second, at.normal) {
+            if let Some(normal) = satisfying_both(&first, &second, at.normal) {
                 let found = NormalSeparation::along(cso, normal, &at.extreme, cost);
                 best = Some(best.map_or(found, |best| best.or(found)));
             }
@@ -73,7 +73,7 @@ pub(super) fn ruled<A: Body, B: Body>(
 }
 
 /// The rulings of shape 2 in frame 1, as conditions for the contact normal.
-fn rulings_2<A: Body, B: Body>(
+fn rulings_2<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
 ) -> impl Iterator<Item = Ruling> {
@@ -86,7 +86,7 @@ fn rulings_2<A: Body, B: Body>(
 }
 
 /// Of the two unit vectors that satisfy both rulings, the one nearer to `about`.
-fn suiting_both(first: &Ruling, second: &Ruling, about: DVec3) -> Option<DVec3> {
+fn satisfying_both(first: &Ruling, second: &Ruling, about: DVec3) -> Option<DVec3> {
     let cross = first.axis.cross(second.axis);
     let area = cross.length_squared();
     if area < PARALLEL_AXES {
@@ -104,7 +104,7 @@ fn suiting_both(first: &Ruling, second: &Ruling, about: DVec3) -> Option<DVec3> 
 }
 
 /// The normal with the greatest separation that satisfies one ruling.
-pub(super) fn along_rulings<A: Body, B: Body>(
+pub(super) fn along_rulings<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
     cost: &mut Cost,
@@ -122,7 +122,7 @@ pub(super) fn along_rulings<A: Body, B: Body>(
 
 /// The normal close to the one at hand with the greatest separation, between vertices and rims, where no
 /// ruling restricts it. Found by Newton's method.
-pub(super) fn smooth<A: Body, B: Body>(
+pub(super) fn smooth<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
     cost: &mut Cost,

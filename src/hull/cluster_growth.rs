@@ -13,11 +13,11 @@ use crate::tolerance::CLUSTER_ANGLE_COS;
 /// rest of a larger flat region becomes another cluster.
 const MAX_MEMBERS: usize = 64;
 
-/// Grows clusters from the faces that are beside a face of about their direction, the largest first.
+/// Grows clusters from the faces with a neighbour of about the same direction, the largest first.
 pub(super) fn grow_clusters(points: &[Vec3], faces: &Faces, graph: &EdgeGraph) -> FaceClusters {
     let mut clusters = FaceClusters::default();
     let mut taken: Vec<bool> = (0..faces.len())
-        .map(|face| !faces.is_beside_like(FaceId::new(face)))
+        .map(|face| !faces.has_similar_neighbor(FaceId::new(face)))
         .collect();
     for seed in seeds(points, faces) {
         if taken[usize::from(seed)] || faces.normal(seed.into()) == DVec3::ZERO {
@@ -32,11 +32,11 @@ pub(super) fn grow_clusters(points: &[Vec3], faces: &Faces, graph: &EdgeGraph) -
     clusters
 }
 
-/// The faces beside one of about their direction, the largest first.
+/// The faces with a neighbour of about the same direction, the largest first.
 fn seeds(points: &[Vec3], faces: &Faces) -> impl Iterator<Item = u16> {
     let seeds = (0..)
         .take(faces.len())
-        .filter(|&face: &u16| faces.is_beside_like(face.into()));
+        .filter(|&face: &u16| faces.has_similar_neighbor(face.into()));
     largest_first(seeds, |face| area(points, faces, face))
 }
 

@@ -31,9 +31,9 @@ pub(super) struct FaceRecord {
     pub(super) offset: f64,
 }
 
-/// The mark of a face beside another one of about the same direction: only such faces are in clusters. Most
-/// faces are not, and then nothing else need be read. No hull has so many corners that the bit is in use.
-pub(super) const BESIDE_LIKE: u32 = 1 << 31;
+/// The mark of a face with a neighbour of about the same direction: only such faces are in clusters. Most
+/// faces have none, and then nothing else need be read. No hull has so many corners that the bit is in use.
+pub(super) const HAS_SIMILAR_NEIGHBOR: u32 = 1 << 31;
 
 /// A face or an outline, with the points of its hull.
 #[derive(Clone, Copy)]
@@ -84,7 +84,7 @@ impl FaceRecord {
 
     #[inline]
     fn first(&self) -> usize {
-        (self.first & !BESIDE_LIKE) as usize
+        (self.first & !HAS_SIMILAR_NEIGHBOR) as usize
     }
 }
 
@@ -129,8 +129,8 @@ impl Faces {
 
     /// Whether a neighbour of a face has about the same direction.
     #[inline]
-    pub fn is_beside_like(&self, face: FaceId) -> bool {
-        self.polygons[face.index()].first & BESIDE_LIKE != 0
+    pub fn has_similar_neighbor(&self, face: FaceId) -> bool {
+        self.polygons[face.index()].first & HAS_SIMILAR_NEIGHBOR != 0
     }
 
     /// The cluster that a face belongs to: the id of its outline, and the faces under the outline. `grow` finds
@@ -141,7 +141,7 @@ impl Faces {
         face: FaceId,
         grow: impl FnOnce() -> Box<FaceClusters>,
     ) -> Option<(FaceId, &[u16])> {
-        if !self.is_beside_like(face) {
+        if !self.has_similar_neighbor(face) {
             return None;
         }
         let (cluster, faces) = self.clusters.get_or_init(grow).containing(face)?;

@@ -3,7 +3,7 @@
 use parry3d::query::Unsupported;
 use parry3d::shape::{Shape, ShapeType};
 
-use crate::curved::Body;
+use crate::curved::SurfacePieces;
 use crate::parry::capsules::update_capsules;
 use crate::parry::convert::Core;
 use crate::parry::manifold::{CurvedPair, CurvedUpdate, UpdateManifold};
@@ -70,7 +70,7 @@ struct PairUpdate<'u, 'a> {
 
 impl PairUpdate<'_, '_> {
     /// Parry's routine for balls is exact.
-    fn with(&mut self, first: &Core, second: &impl Body) -> Result<(), Unsupported> {
+    fn with(&mut self, first: &Core, second: &impl SurfacePieces) -> Result<(), Unsupported> {
         match first {
             Core::Ball(_) => Err(Unsupported),
             Core::Segment(first) => self.with_both(first, second),
@@ -81,7 +81,11 @@ impl PairUpdate<'_, '_> {
         }
     }
 
-    fn with_both(&mut self, first: &impl Body, second: &impl Body) -> Result<(), Unsupported> {
+    fn with_both(
+        &mut self,
+        first: &impl SurfacePieces,
+        second: &impl SurfacePieces,
+    ) -> Result<(), Unsupported> {
         let pair = CurvedPair {
             shapes: (first, second),
             border_radii: self.border_radii,

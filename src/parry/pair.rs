@@ -3,7 +3,7 @@
 use parry3d::math::{Pose, Real};
 use parry3d::query::Unsupported;
 
-use crate::curved::Body;
+use crate::curved::SurfacePieces;
 use crate::hull::Hull;
 use crate::parry::convert::HalfSpace;
 use crate::parry::instances::HullPartner;
@@ -110,7 +110,7 @@ pub(crate) trait PairVisitor: Sized {
     }
 
     /// The other shape is a cylinder or a cone.
-    fn visit_curved<B: Body>(
+    fn visit_curved<B: SurfacePieces>(
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,

@@ -1,4 +1,4 @@
-//! Distances that were certified, which tell how far pairs at rest are apart while they hardly move.
+//! Certified distances of pairs at rest, which bound the distances at later poses while the shapes hardly move.
 //!
 //! The signed distance of two shapes changes by no more than their points move relative to each other. The present
 //! pose is compared with that of the certificate, so errors do not add up from frame to frame.
@@ -76,7 +76,7 @@ impl StillCache {
         };
         known.shapes == pair.shapes.map(Some)
             && is_nearly_unit(pair.rotation)
-            && (known.distance - distance).abs() + known.way_to(pair) <= tolerance
+            && (known.distance - distance).abs() + known.motion_to(pair) <= tolerance
     }
 
     /// Stores a signed distance that was certified at the present pose.
@@ -95,9 +95,9 @@ impl StillCache {
 }
 
 impl Certified {
-    /// How far points of the smaller shape have moved since, at most, seen from the larger one.
+    /// An upper bound of how far any point of the smaller shape has moved since, in the frame of the larger one.
     #[inline]
-    fn way_to(&self, pair: &StillPair) -> f64 {
+    fn motion_to(&self, pair: &StillPair) -> f64 {
         let turned = chord(pair.rotation, self.rotation) / PROOF_MARGIN;
         self.place.distance(pair.place) + turned * pair.radius
     }

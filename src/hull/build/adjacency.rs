@@ -1,5 +1,5 @@
-//! The surface of a small hull as a matrix, which says of each two vertices which triangle is left of the edge
-//! between them. Nothing is sorted or searched for, and the neighbours of a vertex are the bits of a word.
+//! The surface of a small hull as an adjacency matrix: for each two vertices, the triangle left of the edge from one
+//! to the other. Nothing is sorted or searched for, and the neighbours of a vertex are the bits of a word.
 
 use std::mem;
 
@@ -7,10 +7,10 @@ use crate::hull::graph::FaceCorner;
 use crate::hull::lists::Rows;
 use crate::hull::scan;
 
-/// More vertices have no matrix.
+/// The largest number of vertices that a matrix has room for.
 pub(super) const VERTICES: usize = scan::LARGEST;
 
-/// More than its triangles.
+/// Room for the triangles, of which there are four fewer.
 pub(super) const TRIANGLES: usize = 2 * VERTICES;
 
 /// A triangulated surface, and memory for the next one.
@@ -19,21 +19,21 @@ pub(super) struct AdjacencyMatrix {
     pub triangles: Vec<[u32; 3]>,
     /// The face of each triangle: itself, or a polygon.
     face_of: [u8; TRIANGLES],
-    /// One that is of no face, and the corners of all faces.
+    /// The corners of all faces, after an entry that belongs to no face.
     corners: Vec<FaceCorner>,
     /// The neighbours of each vertex: a bit for each.
     neighbors: [u64; VERTICES],
-    /// From a vertex to each of its neighbours. Others may be left over from the surface before.
+    /// The edges from each vertex to its neighbours. Other entries may be left over from an earlier surface.
     edges: Box<[[MatrixEdge; VERTICES]; VERTICES]>,
 }
 
 /// A directed edge.
 #[derive(Clone, Copy, Default)]
 struct MatrixEdge {
-    /// The triangle left of it, and the corner of that triangle which is not on it.
+    /// The triangle left of it, and the corner of this triangle opposite to it.
     triangle: u8,
     third: u8,
-    /// Its start among the corners, or [`DIAGONAL`].
+    /// The index of its start among the corners, or [`DIAGONAL`].
     start: u16,
 }
 
@@ -50,7 +50,7 @@ pub(super) struct Spoke {
     /// The triangle to its left, and the one to its right, which is between the two neighbours.
     left: u8,
     right: u8,
-    /// Its start and its end among the corners.
+    /// The indices of its start and its end among the corners.
     starts: [u16; 2],
 }
 
@@ -103,7 +103,7 @@ impl AdjacencyMatrix {
         }
         let (used, unused) = self.neighbors.split_at(count);
         let edges: u32 = used.iter().map(|row| row.count_ones()).sum();
-        // No vertex is too high, and no two edges are the same.
+        // No index is too large, and no two edges are the same.
         let are_good = bits >> VERTICES.ilog2() == 0
             && unused.iter().all(|&row| row == 0)
             && Ok(edges) == u32::try_from(3 * triangles.len());
@@ -149,7 +149,7 @@ impl AdjacencyMatrix {
         self.corners.push(FaceCorner::new(from, 0));
     }
 
-    /// Merges triangles into polygons, whose zigzags they are. Calls `add` for each face, with a triangle of it and
+    /// Merges the triangle strips of polygons into these. Calls `add` for each face, with a triangle of it and
     /// the number of its polygon.
     pub fn merge(&mut self, polygons: &Rows<u32>, mut add: impl FnMut(usize, Option<usize>)) {
         let polygon_of = self.mark_polygons(polygons);
@@ -232,7 +232,7 @@ impl AdjacencyMatrix {
         self.face_of[triangle % TRIANGLES]
     }
 
-    /// Notes the place of an edge among the neighbours of its lower vertex.
+    /// Stores the slot of an edge: its place among the neighbours of its lower vertex.
     #[inline]
     pub fn set_slot(&mut self, spoke: &Spoke, slot: u16) {
         for start in spoke.starts {

@@ -1,17 +1,17 @@
-//! The triangles of a surface as vectors, with the volume inside it.
+//! The area vectors of the triangles of a surface, and the volume inside it.
 
 use glam::{DVec3, Vec3};
 
 use crate::at::At;
 use crate::tolerance::MIN_TRIANGLE_HEIGHT;
 
-/// The triangles of a surface as vectors.
+/// The area vectors of all triangles, and the volume inside the surface.
 pub(super) struct AreaVectors {
     pub triangles: Vec<AreaVector>,
     pub inside: Volume,
 }
 
-/// A triangle as a vector, and how its corners lie along it.
+/// The area vector of a triangle, and the heights of the corners along its normal.
 #[derive(Clone, Copy, Default)]
 pub(super) struct AreaVector {
     /// Twice the area vector.
@@ -20,7 +20,7 @@ pub(super) struct AreaVector {
     pub area: f64,
     /// The unit normal, rounded. It may be NaN if there is no area.
     pub normal: Vec3,
-    /// The heights of the outermost corner along the rounded normal, and of the innermost one.
+    /// The heights of the outermost and the innermost corner along the rounded normal.
     pub highest: f64,
     pub lowest: f64,
 }
@@ -32,7 +32,7 @@ pub(super) struct Volume {
     pub origin: DVec3,
     /// Six times the volume.
     pub volume: f64,
-    /// Its centre from the origin, times four times that.
+    /// 24 times the first moment: the volume times the centroid, relative to `origin`.
     pub moment: DVec3,
 }
 

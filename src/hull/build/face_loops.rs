@@ -6,7 +6,7 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 use parry3d::shape::ConvexPolyhedron;
 
-use super::flat_sides::{SideBorder, from_lowest, side_normal, zigzag};
+use super::flat_sides::{SideBorder, from_lowest, side_normal, triangle_strip};
 use crate::at::At;
 use crate::hull::lists::Rows;
 use crate::tuning::SEEMS_FLAT;
@@ -51,7 +51,7 @@ impl FlatFaces {
                     }
                 }
             }
-            flat.triangles.extend(zigzag(&polygon));
+            flat.triangles.extend(triangle_strip(&polygon));
             if polygon.len() > 3 {
                 flat.polygons.push(polygon.iter().copied());
             }
@@ -65,7 +65,7 @@ impl FlatFaces {
     }
 }
 
-/// The places of a face's corners, and of its edges, in parry's lists.
+/// The range of a face's corners, and of its edges, in parry's lists.
 fn places(first: u32, count: u32) -> Range<usize> {
     first as usize..first as usize + count as usize
 }

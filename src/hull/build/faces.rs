@@ -12,7 +12,7 @@ use super::flat_edges::NearlyFlatEdges;
 use super::half_edge::{HalfEdge, HalfEdgeMesh, triangle};
 use super::regions::CoplanarRegions;
 use crate::at::At;
-use crate::hull::faces::{BESIDE_LIKE, FaceRecord, Faces};
+use crate::hull::faces::{FaceRecord, Faces, HAS_SIMILAR_NEIGHBOR};
 use crate::hull::graph::FaceCorner;
 use crate::tolerance::{CLUSTER_ANGLE_COS, FACE_FLATNESS};
 
@@ -57,19 +57,19 @@ impl Faces {
         if !has_planes {
             // A face without a plane may be in any cluster.
             let all = faces.polygons.iter_mut().take(faces.count);
-            all.for_each(|face| face.first |= BESIDE_LIKE);
+            all.for_each(|face| face.first |= HAS_SIMILAR_NEIGHBOR);
         } else if flat.is_empty() {
-            faces.mark_alike(mesh, &merged.face_of, bends.nearly_flat.iter().copied());
+            faces.mark_similar_neighbors(mesh, &merged.face_of, bends.nearly_flat.iter().copied());
         } else {
             // The normal of a merged face is not that of its triangles.
             let edges = (0..).zip(mesh.triangles.as_flattened());
-            faces.mark_alike(mesh, &merged.face_of, edges.map(|(h, _)| h));
+            faces.mark_similar_neighbors(mesh, &merged.face_of, edges.map(|(h, _)| h));
         }
         (faces, merged)
     }
 
     /// Marks the faces of about the same direction that meet at some of these edges.
-    fn mark_alike(
+    fn mark_similar_neighbors(
         &mut self,
         mesh: &HalfEdgeMesh<'_>,
         face_of: &[u16],
@@ -80,7 +80,7 @@ impl Faces {
             let [here, beyond] = faces.map(|face| self.normal(face.into()));
             if faces[0] != faces[1] && here.dot(beyond) >= CLUSTER_ANGLE_COS {
                 for face in faces {
-                    self.polygons[usize::from(face)].first |= BESIDE_LIKE;
+                    self.polygons[usize::from(face)].first |= HAS_SIMILAR_NEIGHBOR;
                 }
             }
         }

@@ -24,7 +24,7 @@ pub(in crate::hull) fn retriangulated(
     let mut all: Vec<[u32; 3]> = sides
         .polygons
         .iter()
-        .flat_map(|side| zigzag(side))
+        .flat_map(|side| triangle_strip(side))
         .collect();
     all.sort_unstable();
     Some(all)
@@ -193,9 +193,9 @@ impl SideBorder {
     }
 }
 
-/// The triangles of a polygon that begins at its lowest corner, each starting at its lowest corner. They are cut
-/// off from both ends in turn, so that no corner has many of them.
-pub(super) fn zigzag(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+/// The triangle strip of a polygon that begins at its lowest corner, each triangle starting at its lowest corner.
+/// Triangles are cut off from both ends in turn, so that no corner has many of them.
+pub(super) fn triangle_strip(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let (mut low, mut high) = (0, polygon.len() - 1);
     let mut is_low = false;
     std::iter::from_fn(move || {

@@ -13,7 +13,7 @@ pub(in crate::hull) type HalfEdge = u32;
 #[derive(Clone, Copy, Default)]
 pub(in crate::hull) struct DirectedEdge {
     pub to: u16,
-    /// The third vertex of the triangle, which is left of the side.
+    /// The vertex of the triangle opposite to the side. The triangle is left of the side.
     pub third: u16,
     pub triangle: u16,
     side: u16,
@@ -53,7 +53,7 @@ impl<'a> HalfEdgeMesh<'a> {
         if let Some(loose) = first.windows(2).position(|pair| pair[0] == pair[1]) {
             return Err(HullError::LooseVertex(loose));
         }
-        // As many triangles as a sphere has.
+        // As many triangles as a closed surface without holes has (Euler's formula).
         if triangles.len() + 4 != 2 * count {
             return Err(HullError::NotManifold);
         }
@@ -122,7 +122,7 @@ impl<'a> HalfEdgeMesh<'a> {
     /// Sorts the sides around each vertex, and so finds their twins. `false` if the triangles around a vertex
     /// are not a single fan.
     fn sort_around_vertices(&mut self, unsorted: &[DirectedEdge]) -> bool {
-        // For each neighbour, the side whose triangle is right of the way to it.
+        // For each neighbour, the side whose triangle is right of the edge to it.
         let mut right = vec![0_u32; self.vertex_count()];
         let mut sides = self.sides.as_mut_slice();
         (0..).zip(self.first.windows(2)).all(|(v, ends)| {

@@ -42,7 +42,7 @@ struct HullFacet {
     vertices: [u32; 3],
     /// The facets beyond the sides from each vertex to the next.
     beyond: [u32; 3],
-    /// Points above it. Each point is assigned to one of the facets that it is above.
+    /// Its outside set: points above it. Each point is assigned to one of the facets that it is above.
     above: Vec<u32>,
     /// The highest of these points.
     peak: (f64, u32),
@@ -108,7 +108,7 @@ impl<'a> GrowingHull<'a> {
             starting_at: vec![0; points.len()],
         };
         for point in 0..points.short_len() {
-            surface.hand_over(point, 0);
+            surface.assign(point, 0);
         }
         Ok(surface)
     }
@@ -131,7 +131,7 @@ impl<'a> GrowingHull<'a> {
     }
 
     /// Assigns a point to the first facet, from `first` on, that it is above, if there is one.
-    fn hand_over(&mut self, point: u32, first: u32) {
+    fn assign(&mut self, point: u32, first: u32) {
         for facet in first..self.facet_count() {
             let height = self.height(facet, point);
             if height > 0.0 {
@@ -165,7 +165,7 @@ impl<'a> GrowingHull<'a> {
                     unassigned.append(&mut self.facet_mut(facet).above);
                 }
                 for point in unassigned.drain(..) {
-                    self.hand_over(point, first);
+                    self.assign(point, first);
                 }
             }
             facet += 1;

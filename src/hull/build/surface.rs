@@ -1,4 +1,4 @@
-//! A surface that passed all checks but those that need its faces, on its way to a hull.
+//! A surface that has passed all checks but those that need its faces: what a hull is made from.
 
 use glam::{DVec3, Vec3};
 

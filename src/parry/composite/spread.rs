@@ -1,4 +1,7 @@
 //! Four contacts in one plane that are far from each other.
+//!
+//! They are chosen one at a time, since a contact that is the deepest of its part may go first. So this is not the
+//! choice of `manifold/reduce.rs`, which takes the two sides of the longest line at once.
 
 use glam::Vec2;
 use parry3d::math::Real;

@@ -5,10 +5,10 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::Unsupported;
 
 use super::curved_manifold::CurvedManifold;
+use super::kernel_manifold::AxisFrame;
 use super::normals::Normals;
-use super::record::AxisFrame;
-use super::still::{Before, Still};
-use crate::curved::{self, Body, CurvedAnswer, CurvedQuery, Patch};
+use super::still::{SettledContacts, Still};
+use crate::curved::{self, CurvedAnswer, CurvedQuery, Patch, SurfacePieces};
 use crate::manifold::Contacts;
 use crate::parry::constraints::{ConstrainedPair, Constraints};
 use crate::parry::order::PairOrder;
@@ -54,7 +54,7 @@ pub(crate) struct CurvedUpdate<'a> {
 
 impl CurvedUpdate<'_> {
     /// Of two shapes, at least one of which is curved.
-    pub fn run<A: Body, B: Body>(
+    pub fn run<A: SurfacePieces, B: SurfacePieces>(
         &mut self,
         pair: &CurvedPair<'_, A, B>,
         workspace: &mut Workspace,
@@ -64,15 +64,15 @@ impl CurvedUpdate<'_> {
         let borders = pair.border_radii[0] + pair.border_radii[1];
         let touching = MIN_DIRECTED_DISTANCE * (cso.size() + borders);
         let max_distance = f64::from(self.prediction) + touching;
-        let before = self.before(&cso, pair.order);
-        let still = before.as_ref().map(|before| &before.still);
-        if self.is_held(pair, still, max_distance + borders, workspace) {
+        let settled = self.settled_contacts(&cso, pair.order);
+        let still = settled.as_ref().map(|settled| &settled.still);
+        if self.hold_if_proved(pair, still, max_distance + borders, workspace) {
             return Ok(());
         }
         let read = || self.manifold.last_contacts(pair.order, &pose);
-        let last = before
+        let last = settled
             .as_ref()
-            .map_or_else(read, |before| Some(before.last));
+            .map_or_else(read, |settled| Some(settled.last));
         let mut cost = Cost::default();
         let hint = self.manifold.hint(pair.order, AxisFrame::of(&cso), borders);
         let mut query = CurvedQuery {
@@ -116,22 +116,22 @@ impl CurvedUpdate<'_> {
     }
 
     /// The contacts of the manifold, if they may stay as they are.
-    fn before<A: Body, B: Body>(
+    fn settled_contacts<A: SurfacePieces, B: SurfacePieces>(
         &mut self,
         cso: &Cso<'_, A, B>,
         order: PairOrder,
-    ) -> Option<Before> {
+    ) -> Option<SettledContacts> {
         let are_free = matches!(self.constraints, [Constraints::None, Constraints::None]);
         let key = self
             .manifold
-            .settled(order, cso.pose)
+            .settled_key(order, cso.pose)
             .filter(|_| are_free)?;
         let pair = StillPair::of(cso, self.pos12.rotation, key)?;
-        self.manifold.before(order, cso.pose, pair)
+        self.manifold.settled_contacts(order, cso.pose, pair)
     }
 
-    /// Measures contacts of a pair at rest anew, if that is proved to be enough.
-    fn is_held<A, B>(
+    /// Only measures the contacts of a pair at rest anew, if that is proved to be enough. Returns whether it is.
+    fn hold_if_proved<A, B>(
         &mut self,
         pair: &CurvedPair<'_, A, B>,
         still: Option<&Still>,
@@ -149,7 +149,7 @@ impl CurvedUpdate<'_> {
     }
 
     /// Returns whether the contacts stayed where they were.
-    fn update_contacts<A: Body, B: Body>(
+    fn update_contacts<A: SurfacePieces, B: SurfacePieces>(
         &mut self,
         near: &Near<'_, '_, A, B>,
         still: Option<&Still>,
@@ -183,7 +183,7 @@ struct Near<'a, 'c, A, B> {
     last: Option<&'a LastContacts>,
 }
 
-impl<A: Body, B: Body> Near<'_, '_, A, B> {
+impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
     fn proximity(&self) -> Proximity {
         Proximity {
             signed_distance: self.least,

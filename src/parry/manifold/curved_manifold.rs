@@ -3,9 +3,9 @@
 use glam::{DVec3, Vec3};
 use parry3d::query::ContactManifold;
 
+use super::kernel_manifold::{AxisFrame, KernelManifold, key_of};
 use super::normals::Normals;
-use super::record::{AxisFrame, KernelManifold, key_of};
-use super::still::{Before, Still, is_settled};
+use super::still::{SettledContacts, Still, is_settled};
 use crate::curved::Hint;
 use crate::manifold::Contacts;
 use crate::parry::order::PairOrder;
@@ -20,10 +20,15 @@ pub(super) trait CurvedManifold {
     fn last_contacts(&mut self, order: PairOrder, pose: &RelativePose) -> Option<LastContacts>;
 
     /// The manifold's key, if the shapes hardly turned against its normals.
-    fn settled(&self, order: PairOrder, pose: &RelativePose) -> Option<u64>;
+    fn settled_key(&self, order: PairOrder, pose: &RelativePose) -> Option<u64>;
 
-    /// Its contacts then.
-    fn before(&mut self, order: PairOrder, pose: &RelativePose, pair: StillPair) -> Option<Before>;
+    /// The contacts of such a manifold.
+    fn settled_contacts(
+        &mut self,
+        order: PairOrder,
+        pose: &RelativePose,
+        pair: StillPair,
+    ) -> Option<SettledContacts>;
 
     /// Leaves the contacts as they are, at their distances now.
     fn hold(&mut self, still: &Still);
@@ -61,14 +66,19 @@ impl<M, C: Default + Copy> CurvedManifold for ContactManifold<M, C> {
         last
     }
 
-    fn settled(&self, order: PairOrder, pose: &RelativePose) -> Option<u64> {
+    fn settled_key(&self, order: PairOrder, pose: &RelativePose) -> Option<u64> {
         is_settled(self, order, pose).then(|| key_of(self))
     }
 
-    fn before(&mut self, order: PairOrder, pose: &RelativePose, pair: StillPair) -> Option<Before> {
-        let mut before = None;
-        Before::read(&kernel_manifold(self, order), pose, pair, &mut before);
-        before
+    fn settled_contacts(
+        &mut self,
+        order: PairOrder,
+        pose: &RelativePose,
+        pair: StillPair,
+    ) -> Option<SettledContacts> {
+        let mut settled = None;
+        SettledContacts::read(&kernel_manifold(self, order), pose, pair, &mut settled);
+        settled
     }
 
     fn hold(&mut self, still: &Still) {

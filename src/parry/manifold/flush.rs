@@ -6,7 +6,7 @@ use glam::Vec3;
 use parry3d::query::TrackedContact;
 use parry3d::shape::PackedFeatureId;
 
-use super::record::{KernelManifold, pack, unpack};
+use super::kernel_manifold::{KernelManifold, pack, unpack};
 use crate::map_pair::map_pair;
 use crate::query::{ContactId, Feature, FlushFaces, LastContacts};
 use crate::support::{Cso, FaceId, Polytope};
@@ -42,17 +42,17 @@ impl<M, C> KernelManifold<'_, M, C> {
         })
     }
 
-    /// Stores the features in contact in the deepest contact, for the next frame. They may belong to a corner without
-    /// a contact, hardly deeper than this one. If both corners touch the same face, the next query starts there
+    /// Gives the deepest contact the features of the query's witness, from which the next query starts. They may belong
+    /// to a corner without a contact, hardly deeper than this one. If both corners touch the same face, the next query starts there
     /// anyway.
     #[inline]
-    pub fn name_deepest(&mut self, deepest: usize, features: [Feature; 2]) {
+    pub fn set_deepest_features(&mut self, deepest: usize, features: [Feature; 2]) {
         let ids = self.order.to_caller(map_pair(features, pack));
         let points = &mut self.manifold.points;
         let old = [points[deepest].fid1, points[deepest].fid2];
         let has_face = |side: usize| old[side] == ids[side] && is_face(ids[side]);
         if old != ids && !has_face(0) && !has_face(1) {
-            rename(points, deepest, ids);
+            set_features(points, deepest, ids);
         }
     }
 }
@@ -63,7 +63,7 @@ fn is_face(id: PackedFeatureId) -> bool {
 
 /// Gives a contact these features, unless another contact has them or they do not determine a single place.
 #[inline(never)]
-fn rename<C>(contacts: &mut [TrackedContact<C>], contact: usize, ids: [PackedFeatureId; 2]) {
+fn set_features<C>(contacts: &mut [TrackedContact<C>], contact: usize, ids: [PackedFeatureId; 2]) {
     let [Some(f1), Some(f2)] = ids.map(unpack) else {
         return;
     };

@@ -1,7 +1,7 @@
 //! The contacts of a hull with a half-space.
 
+use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
-use super::record::KernelManifold;
 use super::sink::UpdateContacts;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch};

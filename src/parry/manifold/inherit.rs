@@ -5,7 +5,7 @@ use parry3d::math::Real;
 use parry3d::query::TrackedContact;
 use parry3d::shape::PackedFeatureId;
 
-use super::record::{self, KernelManifold};
+use super::kernel_manifold::{self, KernelManifold};
 use crate::manifold::{Contacts, MAX_POINTS};
 use crate::map_pair::map_pair;
 use crate::parry::order::PairOrder;
@@ -72,7 +72,7 @@ impl ManifoldPoints {
         };
         let [a, b, c, d] = &contacts.features;
         let packed = |side: usize| {
-            let pack = |features: &[Feature; 2]| record::pack(features[side]).0;
+            let pack = |features: &[Feature; 2]| kernel_manifold::pack(features[side]).0;
             [pack(a), pack(b), pack(c), pack(d)]
         };
         // References, since which one comes first is selected.

@@ -14,8 +14,8 @@
 use glam::Vec3;
 use parry3d::query::TrackedContact;
 
+use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
-use super::record::KernelManifold;
 use crate::pose::RelativePose;
 use crate::query::{LastContacts, Proximity, first_least};
 use crate::simd::{DVec3x4, coordinates, widened};
@@ -58,7 +58,7 @@ impl<M, C> KernelManifold<'_, M, C> {
     ) -> bool {
         let kept = self.keep_places(last, near.signed_distance, normals, radius);
         if let Some(deepest) = kept {
-            self.name_deepest(deepest, near.features);
+            self.set_deepest_features(deepest, near.features);
         }
         kept.is_some()
     }

@@ -6,9 +6,9 @@ mod flush;
 mod half_space;
 mod inherit;
 mod kept;
+mod kernel_manifold;
 mod normals;
 mod polytopes;
-mod record;
 mod sink;
 mod still;
 
@@ -16,7 +16,7 @@ use glam::Quat;
 use parry3d::math::{Pose, Real};
 use parry3d::query::{ContactManifold, Unsupported};
 
-use crate::curved::Body;
+use crate::curved::SurfacePieces;
 use crate::hull::Hull;
 use crate::parry::apart_cache::ApartPair;
 use crate::parry::constraints::Constraints;
@@ -32,10 +32,10 @@ use crate::stats::{Cost, SharedStats, Stage};
 use crate::support::{Cso, Support};
 pub(crate) use curved::{CurvedPair, CurvedUpdate};
 use half_space::HalfSpaceContacts;
+use kernel_manifold::{AxisFrame, KernelManifold, key_of};
 use polytopes::PolytopeContacts;
-use record::{AxisFrame, KernelManifold, key_of};
 use sink::ManifoldSink;
-use still::Before;
+use still::SettledContacts;
 
 /// Brings a manifold up to date.
 pub(crate) struct UpdateManifold<'a, M, C> {
@@ -66,11 +66,11 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         }
         let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
-        let mut before = None;
-        self.read_before(pair, &pose, &mut before, |rotation, key| {
+        let mut settled = None;
+        self.read_settled(pair, &pose, &mut settled, |rotation, key| {
             StillPair::of(&cso, rotation, key)
         });
-        if self.is_held(pair, before.as_ref(), max_distance, workspace) {
+        if self.hold_if_proved(pair, settled.as_ref(), max_distance, workspace) {
             return Ok(());
         }
         let mut cost = Cost::default();
@@ -78,7 +78,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             pair,
             &cso,
             max_distance,
-            before.as_ref(),
+            settled.as_ref(),
             workspace,
             &mut cost,
         )?;
@@ -93,11 +93,11 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
     ) -> Result<(), Unsupported> {
         let pose = pair.pose(valid_pose(self.pos12)?);
         let max_distance = pair.core_distance(self.prediction, pair.hull.radius());
-        let mut before = None;
-        self.read_before(pair, &pose, &mut before, |rotation, key| {
+        let mut settled = None;
+        self.read_settled(pair, &pose, &mut settled, |rotation, key| {
             plane::still_pair(pair, &pose, rotation, key)
         });
-        if self.is_held(pair, before.as_ref(), max_distance, workspace) {
+        if self.hold_if_proved(pair, settled.as_ref(), max_distance, workspace) {
             return Ok(());
         }
         let contacts = HalfSpaceContacts {
@@ -107,7 +107,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
             scratch: &mut workspace.clip,
         };
         let frame = AxisFrame::First;
-        let mut sink = ManifoldSink::new(self.manifold, pair, frame, contacts, before.as_ref());
+        let mut sink = ManifoldSink::new(self.manifold, pair, frame, contacts, settled.as_ref());
         let mut cost = Cost::default();
         let stage = plane::run_into(pair, &pose, max_distance, &mut sink, &mut cost);
         self.stats.record(sink.stage(stage), &cost);
@@ -115,7 +115,7 @@ impl<M: Default, C: Default + Copy> PairVisitor for UpdateManifold<'_, M, C> {
         Ok(())
     }
 
-    fn visit_curved<B: Body>(
+    fn visit_curved<B: SurfacePieces>(
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,
@@ -141,14 +141,14 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
         }
     }
 
-    /// Reads the contacts of the manifold, if they may stay as they are. They are written to `before`: a return value
+    /// Reads the contacts of the manifold, if they may stay as they are. They are written to `settled`: a return value
     /// would be copied even where there are none.
     #[inline]
-    fn read_before<B>(
+    fn read_settled<B>(
         &mut self,
         pair: &Pair<'_, B>,
         pose: &RelativePose,
-        before: &mut Option<Before>,
+        settled: &mut Option<SettledContacts>,
         still_pair: impl FnOnce(Quat, u64) -> Option<StillPair>,
     ) {
         // Corrected normals need not be those of the query.
@@ -157,20 +157,20 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
             && let Some(still_pair) = still_pair(self.pos12.rotation, key_of(self.manifold))
         {
             let manifold = KernelManifold::new(self.manifold, pair, AxisFrame::First);
-            Before::read(&manifold, pose, still_pair, before);
+            SettledContacts::read(&manifold, pose, still_pair, settled);
         }
     }
 
-    /// Measures contacts of a pair at rest anew, if that is proved to be enough.
+    /// Only measures the contacts of a pair at rest anew, if that is proved to be enough. Returns whether it is.
     #[inline]
-    fn is_held<B>(
+    fn hold_if_proved<B>(
         &mut self,
         pair: &Pair<'_, B>,
-        before: Option<&Before>,
+        settled: Option<&SettledContacts>,
         max_distance: f64,
         workspace: &Workspace,
     ) -> bool {
-        let Some(Before { still, .. }) = before else {
+        let Some(SettledContacts { still, .. }) = settled else {
             return false;
         };
         let is_proved = still.is_proved(&workspace.still_cache, max_distance, pair.border_radii);
@@ -188,7 +188,7 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
         pair: &Pair<'_, B>,
         cso: &Cso<'_, Hull, B>,
         max_distance: f64,
-        before: Option<&Before>,
+        settled: Option<&SettledContacts>,
         workspace: &mut Workspace,
         cost: &mut Cost,
     ) -> Result<Stage, Unsupported> {
@@ -207,7 +207,7 @@ impl<'a, M: Default, C: Default + Copy> UpdateManifold<'a, M, C> {
             pos12: self.pos12,
             scratch: &mut workspace.clip,
         };
-        let mut sink = ManifoldSink::new(self.manifold, pair, frame, contacts, before);
+        let mut sink = ManifoldSink::new(self.manifold, pair, frame, contacts, settled);
         let stage = query.run_into(FullWithHull, &mut sink).ok_or(Unsupported)?;
         let (apart_by, stage) = (sink.still_apart(stage, cso), sink.stage(stage));
         sink.store_held(&mut workspace.still_cache);

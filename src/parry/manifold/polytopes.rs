@@ -3,8 +3,8 @@
 use glam::Vec3;
 use parry3d::math::Pose;
 
+use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
-use super::record::KernelManifold;
 use super::sink::UpdateContacts;
 use crate::hull::Hull;
 use crate::manifold::{ClipScratch, Contacts};

@@ -2,8 +2,8 @@
 
 use parry3d::query::ContactManifold;
 
-use super::record::{AxisFrame, KernelManifold};
-use super::still::{Before, Still};
+use super::kernel_manifold::{AxisFrame, KernelManifold};
+use super::still::{SettledContacts, Still};
 use crate::gjk::SeparatingAxis;
 use crate::parry::pair::Pair;
 use crate::parry::still_cache::StillCache;
@@ -52,19 +52,19 @@ pub(super) struct ManifoldSink<'a, 'p, M, C, B, U> {
     is_kept: bool,
     /// The signed distance of the cores, if the contacts are as they were.
     held_at: Option<f64>,
-    /// How far the memory that the manifold has, and keeps, proves the shapes to be apart.
+    /// The separation that is proved by what the manifold remembers, if it need not change.
     still_apart: Option<f64>,
 }
 
 impl<'a, 'p, M, C, B, U> ManifoldSink<'a, 'p, M, C, B, U> {
-    /// A sink for a manifold, of which the contacts are known if they may stay as they are.
+    /// A sink for a manifold. `settled` are its contacts, if they may stay as they are.
     #[inline(always)]
     pub fn new(
         manifold: &'a mut ContactManifold<M, C>,
         pair: &'a Pair<'p, B>,
         frame: AxisFrame<'a>,
         contacts: U,
-        before: Option<&'a Before>,
+        settled: Option<&'a SettledContacts>,
     ) -> Self {
         Self {
             manifold,
@@ -72,7 +72,7 @@ impl<'a, 'p, M, C, B, U> ManifoldSink<'a, 'p, M, C, B, U> {
             frame,
             contacts,
             last: None,
-            still: before.map(|before| &before.still),
+            still: settled.map(|settled| &settled.still),
             is_kept: false,
             held_at: None,
             still_apart: None,
@@ -84,7 +84,7 @@ impl<'a, 'p, M, C, B, U> ManifoldSink<'a, 'p, M, C, B, U> {
         KernelManifold::new(self.manifold, self.pair, self.frame)
     }
 
-    /// How far shapes are apart of which the manifold says so already.
+    /// The separation, if what the manifold already remembers still proves that the shapes are apart.
     #[inline]
     pub fn still_apart(
         &self,

@@ -7,7 +7,7 @@
 
 use parry3d::query::ContactManifold;
 
-use super::record::KernelManifold;
+use super::kernel_manifold::KernelManifold;
 use crate::parry::order::PairOrder;
 use crate::parry::still_cache::{StillCache, StillPair};
 use crate::pose::RelativePose;
@@ -15,13 +15,14 @@ use crate::query::{LastContacts, first_least};
 use crate::simd::LANES;
 use crate::tolerance::{DEPTH_ERROR, KEPT_DRIFT, STILL_DEPTH, STILL_TILT};
 
-/// The contacts of a manifold whose shapes hardly turned, before its update.
-pub(super) struct Before {
+/// The contacts of a manifold before its update, if the shapes have hardly turned and the contacts are still in
+/// their places.
+pub(super) struct SettledContacts {
     pub last: LastContacts,
     pub still: Still,
 }
 
-/// What the contacts show at the present pose.
+/// Contacts of a pair at rest, measured along the stored normal at the present pose.
 pub(super) struct Still {
     distances: [f64; LANES],
     /// The least of them, and thus that of the shapes, if nothing has to change.
@@ -29,7 +30,7 @@ pub(super) struct Still {
     pair: StillPair,
 }
 
-impl Before {
+impl SettledContacts {
     /// Reads the contacts, unless they have left their places.
     // perf: inlined, it costs pairs that move 2 % more instructions.
     #[inline(never)]
@@ -37,7 +38,7 @@ impl Before {
         manifold: &KernelManifold<'_, M, C>,
         pose: &RelativePose,
         pair: StillPair,
-        before: &mut Option<Self>,
+        settled: &mut Option<Self>,
     ) {
         let mut last = None;
         manifold.read_contacts(pose, &mut last);
@@ -51,7 +52,7 @@ impl Before {
                 least,
                 pair,
             };
-            *before = Some(Self { last, still });
+            *settled = Some(Self { last, still });
         }
     }
 }

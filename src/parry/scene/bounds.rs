@@ -8,7 +8,7 @@ use parry3d::query::Unsupported;
 use parry3d::shape::Shape;
 
 use super::why::why_not;
-use crate::curved::Body;
+use crate::curved::SurfacePieces;
 use crate::epa::{self, EpaScratch};
 use crate::gjk::{self, Outcome};
 use crate::hull::Hull;
@@ -81,7 +81,7 @@ impl PairVisitor for BoundsQuery<'_> {
         self.bounds(pair, GJK_GAP_OF_SIZE, workspace)
     }
 
-    fn visit_curved<B: Body>(
+    fn visit_curved<B: SurfacePieces>(
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,

@@ -5,7 +5,7 @@ use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus, Unsupported};
 use parry3d::shape::Shape;
 
-use crate::curved::Body;
+use crate::curved::SurfacePieces;
 use crate::parry::pair::{Pair, PairVisitor};
 use crate::parry::scene::caller::{CallerProximity, KernelFrame};
 use crate::parry::scene::convex;
@@ -62,7 +62,7 @@ impl PairVisitor for Cast<'_> {
     }
 
     /// parry answers how deep they overlap.
-    fn visit_curved<B: Body>(
+    fn visit_curved<B: SurfacePieces>(
         &mut self,
         pair: &Pair<'_, B>,
         _: &mut Workspace,

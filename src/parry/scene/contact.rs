@@ -4,7 +4,7 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::{Contact, Unsupported};
 use parry3d::shape::Shape;
 
-use crate::curved::{Body, CurvedAnswer, CurvedQuery, Hint};
+use crate::curved::{CurvedAnswer, CurvedQuery, Hint, SurfacePieces};
 use crate::epa;
 use crate::parry::convert::{Core, HalfSpace};
 use crate::parry::instances::{FullWithHull, HullPartner};
@@ -76,7 +76,7 @@ impl ContactQuery<'_> {
     }
 
     /// The contact of a cylinder or a cone and another shape whose cores touch or overlap, as manifolds have it.
-    fn curved_depth<A: Body, B: Body>(
+    fn curved_depth<A: SurfacePieces, B: SurfacePieces>(
         &self,
         pair: &Pair<'_, B, A>,
         workspace: &mut Workspace,
@@ -150,7 +150,7 @@ impl PairVisitor for ContactQuery<'_> {
         Ok(sink.nearest.map(|near| near.contact()))
     }
 
-    fn visit_curved<B: Body>(
+    fn visit_curved<B: SurfacePieces>(
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,

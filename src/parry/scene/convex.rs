@@ -4,7 +4,7 @@ use glam::DVec3;
 use parry3d::query::Unsupported;
 use parry3d::shape::{Shape, ShapeType};
 
-use crate::curved::{Body, CircularEdge, FlatSide, Piece, Ruling};
+use crate::curved::{CircularEdge, FlatSide, Piece, Ruling, SurfacePieces};
 use crate::map_pair::map_pair;
 use crate::parry::convert::Core;
 use crate::parry::order::PairOrder;
@@ -56,7 +56,7 @@ impl Support for Core {
 /// The most edges at a vertex: a cuboid's.
 const MAX_RULINGS: usize = 3;
 
-impl Body for Core {
+impl SurfacePieces for Core {
     fn flat(&self, dir: DVec3, vertex: VertexId) -> Option<FlatSide> {
         of_shape!(self, shape => shape.flat(dir, vertex))
     }

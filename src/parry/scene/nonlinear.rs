@@ -7,7 +7,7 @@ use parry3d::math::Real;
 use parry3d::query::{ShapeCastHit, ShapeCastStatus, Unsupported};
 
 use super::motion::{Course, Motion};
-use crate::curved::Body;
+use crate::curved::SurfacePieces;
 use crate::gjk::SeparatingAxis;
 use crate::parry::composite::scene::MovingShape;
 use crate::parry::pair::{Pair, PairVisitor};
@@ -64,7 +64,7 @@ impl PairVisitor for NonlinearCast {
         self.run(pair, GJK_GAP_OF_SIZE, workspace)
     }
 
-    fn visit_curved<B: Body>(
+    fn visit_curved<B: SurfacePieces>(
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,

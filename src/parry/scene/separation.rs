@@ -7,7 +7,7 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::{ClosestPoints, Unsupported};
 use parry3d::shape::Shape;
 
-use crate::curved::Body;
+use crate::curved::SurfacePieces;
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space;
 use crate::parry::pair::{Pair, PairVisitor, valid_pose};
@@ -165,7 +165,7 @@ impl PairVisitor for SeparationQuery<'_> {
         self.separation(pair, GJK_GAP_OF_SIZE, workspace)
     }
 
-    fn visit_curved<B: Body>(
+    fn visit_curved<B: SurfacePieces>(
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,

@@ -1,5 +1,5 @@
 //! Small hulls that bend clearly at every edge between two faces, such as debris. One walk around each vertex
-//! finds what the way through a [`Surface`](super::surface::Surface) takes many passes for. The hulls are the same.
+//! finds what a [`Surface`](super::surface::Surface) finds in many passes. The hulls are the same.
 
 mod builder;
 #[cfg(test)]
@@ -19,7 +19,7 @@ thread_local! {
     static BUILDER: RefCell<SteepBuilder> = RefCell::default();
 }
 
-/// The hull with this surface, in any order of the triangles. Some of them are zigzags of flat polygons, which are
+/// The hull with this surface, in any order of the triangles. Some of them are strips of flat polygons, which are
 /// strictly convex and begin at their lowest corner. `None` if the hull is large, or hardly bends somewhere, or does
 /// not pass the checks.
 pub(super) fn steep_hull(

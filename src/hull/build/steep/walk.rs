@@ -3,7 +3,7 @@
 use super::builder::SteepBuilder;
 use crate::hull::build::adjacency::{Spoke, row};
 use crate::hull::build::graph::{GraphBuilder, Neighbor};
-use crate::hull::faces::BESIDE_LIKE;
+use crate::hull::faces::HAS_SIMILAR_NEIGHBOR;
 use crate::hull::graph::EdgeGraph;
 use crate::tolerance::{CLUSTER_ANGLE_COS, NEARLY_FLAT_COS, STEEP_EDGE};
 
@@ -36,7 +36,7 @@ impl SteepBuilder {
                 self.matrix.set_slot(&spoke, slot);
                 if face != other {
                     self.is_steep(from, &spoke, least).then_some(())?;
-                    self.mark_alike(&spoke);
+                    self.mark_similar_neighbors(&spoke);
                 }
                 self.matrix.has(to, from).then_some(())?;
             }
@@ -60,24 +60,24 @@ impl SteepBuilder {
 
     /// Marks the faces on the sides of an edge if they have about the same direction.
     #[inline]
-    fn mark_alike(&mut self, spoke: &Spoke) {
+    fn mark_similar_neighbors(&mut self, spoke: &Spoke) {
         let [left, right] = spoke.sides();
         let (here, there) = (&self.areas[left], &self.areas[right]);
         // The normal of a polygon is not that of its triangles.
         if self.has_polygons
             || here.vector.dot(there.vector) >= NEARLY_FLAT_COS * here.length * there.length
         {
-            self.mark_if_alike([left, right]);
+            self.mark_if_similar([left, right]);
         }
     }
 
     #[inline(never)]
-    fn mark_if_alike(&mut self, triangles: [usize; 2]) {
+    fn mark_if_similar(&mut self, triangles: [usize; 2]) {
         let [left, right] = triangles.map(|t| usize::from(self.matrix.face_of(t)));
         let normal = |face: usize| self.planes[face].normal.as_dvec3();
         if normal(left).dot(normal(right)) >= CLUSTER_ANGLE_COS {
-            self.planes[left].first |= BESIDE_LIKE;
-            self.planes[right].first |= BESIDE_LIKE;
+            self.planes[left].first |= HAS_SIMILAR_NEIGHBOR;
+            self.planes[right].first |= HAS_SIMILAR_NEIGHBOR;
         }
     }
 }

@@ -29,8 +29,9 @@ pub struct CircularEdge {
     pub radius: f64,
 }
 
-/// A convex shape whose surface consists of pieces. Everything is in its own frame.
-pub trait Body: Support {
+/// A convex shape whose surface consists of flat sides, ruled sides, edges and vertices. Everything is in its own
+/// frame.
+pub trait SurfacePieces: Support {
     /// The flat side at `vertex` whose normal is nearest to `dir`. `vertex` is extreme along `dir`.
     fn flat(&self, dir: DVec3, vertex: VertexId) -> Option<FlatSide>;
 
@@ -66,7 +67,7 @@ pub trait Body: Support {
     ) -> Piece;
 }
 
-impl<'a, A: Body, B: Body> Cso<'a, A, B> {
+impl<'a, A: SurfacePieces, B: SurfacePieces> Cso<'a, A, B> {
     /// The same shapes in the other order. `inverse` is the pose of shape 1 in frame 2.
     pub(super) fn reversed(&self, inverse: &'a RelativePose) -> Cso<'a, B, A> {
         Cso {
