@@ -120,6 +120,8 @@ fn settled(scene: Scene) -> Option<Settled> {
         // Four millimetres thick, and pressed into each other by a few.
         Scene::Plates | Scene::Needles => (2.0, 0.002),
         Scene::Breach => (0.1, 0.05),
+        // Held in the air, 0.2 m above the floor, by fingers of 2 cm.
+        Scene::Grippers | Scene::ShakenGrippers => (0.3, 0.18),
         // A quarter of what a body measures. Small stones, a few centimetres thick, sink into each other by
         // some millimetres, as soft contacts let them.
         Scene::Dice | Scene::Rocks | Scene::Pebbles => {

@@ -55,6 +55,7 @@ pub fn fill(
         Scene::Rolling => filler.rolling(),
         Scene::Trimesh | Scene::Heightfield | Scene::Rubble => filler.bumpy(scene)?,
         Scene::Breach => filler.breach(),
+        Scene::Grippers | Scene::ShakenGrippers => filler.grippers(scene)?,
         Scene::Pile
         | Scene::Cuboids
         | Scene::Balls
@@ -129,6 +130,8 @@ fn shapes(
         | Scene::Trimesh
         | Scene::Heightfield
         | Scene::Rubble
+        | Scene::Grippers
+        | Scene::ShakenGrippers
         | Scene::Reshaped
         | Scene::Bursts => hulls::make(&params.hulls, count, random)?,
     })

@@ -7,6 +7,7 @@ mod families;
 mod figures;
 mod filler;
 mod flat;
+mod gripping;
 pub mod hulls;
 mod renewal;
 mod standing;
@@ -77,6 +78,10 @@ pub enum Scene {
     Breach,
     /// Hulls dropped on a heap of boxes that is one compound.
     Rubble,
+    /// Hulls held between two fingers each.
+    Grippers,
+    /// The same, while the hands are shaken.
+    ShakenGrippers,
     /// A pile in which every body gets a new hull before each step.
     Reshaped,
     /// A pile in which bodies with new hulls replace the oldest third every half a second.
@@ -85,7 +90,7 @@ pub enum Scene {
 
 impl Scene {
     /// Every scene.
-    pub const ALL: [Self; 27] = [
+    pub const ALL: [Self; 29] = [
         Self::Drum,
         Self::Pile,
         Self::Stack,
@@ -111,6 +116,8 @@ impl Scene {
         Self::Needles,
         Self::Breach,
         Self::Rubble,
+        Self::Grippers,
+        Self::ShakenGrippers,
         Self::Reshaped,
         Self::Bursts,
     ];
@@ -143,6 +150,8 @@ impl Scene {
             Self::Needles => "needles",
             Self::Breach => "breach",
             Self::Rubble => "rubble",
+            Self::Grippers => "grippers",
+            Self::ShakenGrippers => "shaken-grippers",
             Self::Reshaped => "reshaped",
             Self::Bursts => "bursts",
         }
@@ -164,7 +173,7 @@ impl Scene {
             | Self::Bursts => 300,
             Self::Reshaped => 100,
             Self::Spin | Self::Top => 16,
-            Self::Dominoes | Self::Rolling => 64,
+            Self::Dominoes | Self::Rolling | Self::Grippers | Self::ShakenGrippers => 64,
             Self::Stack | Self::Wall => 128,
             Self::Coins | Self::Compound | Self::Trimesh | Self::Heightfield => 256,
             Self::Asleep | Self::Cuboids | Self::Balls => 1000,
@@ -185,7 +194,7 @@ impl Scene {
         match self {
             Self::Rocks | Self::Stones | Self::Dice | Self::Rubble => Some(0.12),
             Self::Pebbles => Some(0.05),
-            Self::Cubes => Some(0.1),
+            Self::Cubes | Self::Grippers | Self::ShakenGrippers => Some(0.1),
             Self::Plates | Self::Needles => Some(0.4),
             Self::Breach => Some(0.25),
             Self::Bursts => Some(0.2),
@@ -216,6 +225,8 @@ impl Scene {
             | Self::Trimesh
             | Self::Heightfield
             | Self::Rubble
+            | Self::Grippers
+            | Self::ShakenGrippers
             | Self::Reshaped
             | Self::Bursts => Hulls::Any,
         }

@@ -3,6 +3,7 @@
 use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::*;
 
+use super::gripping::{self, Shaken};
 use super::renewal::Renewal;
 
 /// Radians per second at which a drum turns.
@@ -15,6 +16,7 @@ pub struct World {
     /// Told before each step that no shape changes in it.
     told: Option<IsaGjkDispatcher>,
     drum: Option<RigidBodyHandle>,
+    shaken: Shaken,
     renewal: Option<Renewal>,
     steps: u32,
 }
@@ -34,6 +36,7 @@ impl World {
             },
             told,
             drum: None,
+            shaken: Vec::new(),
             renewal: None,
             steps: 0,
         }
@@ -42,6 +45,11 @@ impl World {
     /// Makes a kinematic body turn about the z axis.
     pub(super) fn turn(&mut self, drum: RigidBodyHandle) {
         self.drum = Some(drum);
+    }
+
+    /// Shakes hands from now on.
+    pub(super) fn shake(&mut self, hands: Shaken) {
+        self.shaken = hands;
     }
 
     /// Makes hulls come into being from now on.
@@ -55,10 +63,11 @@ impl World {
         if let Some(renewal) = &mut self.renewal {
             renewal.renew(&mut self.physics, self.steps);
         }
+        // From the count of steps, so that rounding does not add up over a long run.
+        let time = self.physics.integration_parameters.dt * self.steps as Real;
+        gripping::shake(&self.shaken, &mut self.physics.bodies, time);
         if let Some(drum) = self.drum {
-            // From the count of steps, so that rounding does not add up over a long run.
-            let dt = self.physics.integration_parameters.dt;
-            let angle = DRUM_SPEED * dt * self.steps as Real;
+            let angle = DRUM_SPEED * time;
             self.physics.bodies[drum].set_next_kinematic_rotation(Rotation::from_rotation_z(angle));
         }
         match &self.told {
