@@ -9,7 +9,8 @@
 //! - `separated`, `touching`, `shallow` (1 % deep), `deep` (20 %): two hulls of so many random vertices
 //!   on a trajectory.
 //! - `boxes`, `prisms` (of twelve sides): the same of two of them; touching (1), shallow (2), deep (3).
-//! - `resting`: a prism of so many vertices on another one, trembling by thousandths of a millimetre.
+//! - `resting`: a prism of so many vertices on another one, trembling by thousandths of a millimetre; `shaken`, by
+//!   fiftieths.
 //! - `new`: in each frame another hull of so many vertices meets one that is known.
 //! - `compound`: a hull of eight vertices slides over a compound of so many boxes as hulls.
 //! - `cuboid-cylinder`, `cylinder-cylinder`: 5 mm apart (0), 50 mm deep (1), both on a trajectory; at rest (2).
@@ -20,17 +21,19 @@ use std::process::{Command, ExitCode};
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Rotation, Vector};
 use parry3d::shape::SharedShape;
-use testkit::pair::{FRAMES, GAPS, Manifolds, hull, resting, trajectory, trembling, update};
+use testkit::pair::{FRAMES, GAPS, Manifolds, REST, hull, resting, trajectory, trembling, update};
 use testkit::scenes::hulls;
 
 /// What another minor version of the compiler may cost.
 const TOLERANCE: f64 = 0.05;
 const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.json");
+/// What shaken bodies tremble by, in metres and radians.
+const SHAKEN: f32 = 2e-5;
 /// Frames of the short run; the long one has them all.
 const SHORT: usize = 40;
 
 /// The cases, and their numbers of vertices or parts.
-const CASES: [(&str, &[usize]); 11] = [
+const CASES: [(&str, &[usize]); 12] = [
     ("separated", &VERTICES),
     ("touching", &VERTICES),
     ("shallow", &VERTICES),
@@ -38,6 +41,7 @@ const CASES: [(&str, &[usize]); 11] = [
     ("boxes", &[1, 2, 3]),
     ("prisms", &[1, 2, 3]),
     ("resting", &[8, 16, 32, 64]),
+    ("shaken", &[8, 64]),
     ("new", &[12, 60]),
     ("compound", &[9, 64]),
     ("cuboid-cylinder", &[0, 1, 2]),
@@ -101,8 +105,9 @@ fn pairs(case: &str, size: usize) -> Vec<([SharedShape; 2], Pose)> {
         poses.into_iter().map(with_shapes).collect()
     };
     match case {
-        "resting" => {
-            let (shapes, poses) = resting(size as u32 / 2);
+        "resting" | "shaken" => {
+            let tremble = if case == "resting" { REST } else { SHAKEN };
+            let (shapes, poses) = resting(size as u32 / 2, tremble);
             along(shapes, poses)
         }
         "new" => {
@@ -151,7 +156,7 @@ fn pairs(case: &str, size: usize) -> Vec<([SharedShape; 2], Pose)> {
                 0 => trajectory(&shapes, 0.005, 1.0),
                 1 => trajectory(&shapes, -0.05, 1.0),
                 // Both are a metre high: it stands 1 mm deep.
-                _ => trembling(0.999),
+                _ => trembling(0.999, REST),
             };
             along(shapes, poses)
         }

@@ -6,7 +6,7 @@ use isa_gjk::{IsaGjkDispatcher, PreparedShapes};
 use parry3d::math::{Pose, Vector};
 use parry3d::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry3d::shape::SharedShape;
-use testkit::pair::{FRAMES, GAPS, Manifolds, VERTICES, hull, trajectory, trembling, update};
+use testkit::pair::{FRAMES, GAPS, Manifolds, REST, VERTICES, hull, trajectory, trembling, update};
 use testkit::scenes::hulls;
 
 use crate::in_turn;
@@ -66,7 +66,7 @@ pub fn curved() {
     println!("| pair | {names} | at rest |\n|---|---|---|---|---|---|");
     for (name, shapes) in curved_pairs() {
         let moving = CURVED_GAPS.map(|(_, gap)| trajectory(&shapes, gap, 1.0));
-        let standing = trembling(0.999);
+        let standing = trembling(0.999, REST);
         let row = moving.iter().chain([&standing]).map(|poses| {
             let ours = IsaGjkDispatcher::default();
             in_turn(

@@ -57,7 +57,7 @@ fn moving() -> impl Iterator<Item = (String, [SharedShape; 2])> {
 
 fn at_rest() -> impl Iterator<Item = Case> {
     RESTING_SIDES.into_iter().map(|sides| {
-        let (shapes, poses) = pair::resting(sides);
+        let (shapes, poses) = pair::resting(sides, pair::REST);
         Case {
             hulls: prisms(sides),
             gap: "resting",
