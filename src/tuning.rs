@@ -133,6 +133,10 @@ pub(crate) const RISE: f32 = 15.0;
 /// keeps rattling.
 pub(crate) const ALL_LEVEL: f32 = 0.02;
 
+/// Three contacts bear a body if the third is beside the line through the others by at least this share of the
+/// extent of all: it is so for beams up to ten times as long as wide.
+pub(crate) const BEARING_WIDTH: f32 = 0.1;
+
 /// Contacts of a part are equally deep if their distances differ by less than this share of the extent of the
 /// contacts: less than the promised accuracy of a depth.
 pub(crate) const ONE_DEPTH: f32 = 3e-6;

@@ -5,7 +5,7 @@ use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::QueryDispatcher;
 use parry3d::shape::{Shape, SharedShape};
 use testkit::memory::{Manifold, UpdateManifolds};
-use testkit::scenes::hulls::cuboid;
+use testkit::scenes::hulls::{cuboid, upturned_table};
 
 const HALF: Real = 0.1;
 const PREDICTION: Real = 0.05;
@@ -93,6 +93,28 @@ fn each_part_that_touches_keeps_its_deepest_contact() {
         assert!((deepest.dist - query.dist).abs() < 1e-6, "part {id}");
     }
     assert!(touching > 4, "only {touching} touch");
+}
+
+/// A table upside down: its legs end 6 mm above the floor, and bear nothing. All corners of the top do.
+#[test]
+fn a_table_lies_on_its_top() {
+    const HALF_TOP: Real = 0.06;
+    for legs in [2, 4] {
+        let (floor, table) = (floor(), upturned_table(legs).expect("a table"));
+        for tilt in [0.0, 0.002] {
+            let height = 0.5 + HALF_TOP * tilt - 1e-4;
+            let pos12 = Pose::new(Vector::new(0.3, height, 0.2), Vector::Z * tilt);
+            for manifold in manifolds(&pos12, [&*floor, &*table]) {
+                let part = manifold.subshape2;
+                let expected = if part == 0 { 4 } else { 1 };
+                assert_eq!(
+                    manifold.points.len(),
+                    expected,
+                    "part {part}, {legs} legs, tilt {tilt}"
+                );
+            }
+        }
+    }
 }
 
 #[test]

@@ -10,7 +10,7 @@ use rapier3d::prelude::*;
 use testkit::memory::kept;
 use testkit::quality::{Observer, Quality};
 use testkit::scanned::noisy_box;
-use testkit::scenes::hulls::{RADIUS, cuboid, prism};
+use testkit::scenes::hulls::{RADIUS, cuboid, prism, upturned_table};
 use testkit::scenes::{self, HullSource, Scene, SceneParams, World};
 use testkit::world;
 
@@ -89,6 +89,29 @@ fn heaps_of_compounds_fall_asleep() {
         let (_, seen) = observe(Scene::Compound, &params, 200);
         assert!(seen.asleep_after.is_some(), "seed {seed}: awake");
     }
+}
+
+/// Tables that fall on their tops. With one contact for the top and one for each leg, which ends above the floor,
+/// a third of them rattled for ever.
+#[test]
+fn tables_upside_down_fall_asleep() {
+    const TABLES: i16 = 16;
+    let mut world = PhysicsWorld {
+        narrow_phase: narrow_phase(true),
+        ..PhysicsWorld::default()
+    };
+    let floor = ColliderBuilder::cuboid(9.0, 0.5, 9.0).translation(-0.5 * Vector::Y);
+    world.insert_collider(floor, None);
+    let table = upturned_table(4).expect("a table");
+    let mut random = Rand32::new(1);
+    for i in 0..TABLES {
+        let mut within = |limit: Real| limit * (2.0 * random.rand_float() - 1.0);
+        let turn = Vector::new(within(0.4), within(0.4), within(0.4));
+        let start = Pose::new(Vector::new(0.4 * Real::from(i), 0.1, 0.0), turn);
+        let table = ColliderBuilder::new(table.clone());
+        world.insert(RigidBodyBuilder::dynamic().pose(start), table);
+    }
+    assert!(frames_until_asleep(&mut world, 150).is_some(), "awake");
 }
 
 /// With every pair updated in every step, an impulse lost with its contact would shake a tower.

@@ -5,9 +5,10 @@
 //! body of two parts may lie on one contact that touches and on three that do not. It tips over, the next
 //! four contacts are others, and it never comes to rest.
 //!
-//! So where some contacts are high, we leave four in the plane, or one for each part if there are more parts:
-//! those that are far from each other, but low. Each part keeps its deepest contact, or one as deep, since that
-//! is the answer of its query.
+//! So where some contacts are high, we leave four in the plane: those that are far from each other, but low. Up
+//! to four parts have one of these each, unless that leaves too few low ones to lie on: a table that lies on its
+//! top needs all corners of the top, and nothing under its legs, which end above. Parts without one of the four
+//! keep their deepest contact, or one as deep, since that is the answer of their query.
 
 use glam::Vec2;
 use parry3d::math::{Real, Vector};
@@ -17,7 +18,7 @@ use parry3d::shape::Shape;
 use super::spread::{PartContact, Spread};
 use crate::manifold::MAX_POINTS;
 use crate::parry::curved::is_hull_or_curved;
-use crate::tuning::{ALL_LEVEL, ONE_DEPTH, ONE_PLANE_COS, RISE};
+use crate::tuning::{ALL_LEVEL, BEARING_WIDTH, ONE_DEPTH, ONE_PLANE_COS, RISE};
 
 /// With more planes than these, contacts in the others stay as they are.
 const MAX_PLANES: usize = 8;
@@ -137,41 +138,56 @@ impl Planes {
     }
 }
 
-/// The deepest contact, and three others: each as far as possible from those before it, less its height
-/// above the deepest. The last ones are left to `parts` that have none yet. `None` if all are about equally high:
-/// then any choice will do.
+/// The contacts to leave. `None` if all are about equally high: then any choice will do.
 fn choose(contacts: &[PartContact], parts: usize) -> Option<Spread> {
     let deepest = greatest(contacts, |contact| Some(-contact.distance))?;
-    let height = |contact: &PartContact| contact.distance - deepest.distance;
     let away = |contact: &PartContact| contact.at.distance(deepest.at);
     let extent = contacts.iter().map(away).fold(0.0, Real::max);
-    if contacts
-        .iter()
-        .all(|contact| height(contact) <= ALL_LEVEL * extent)
-    {
+    let level = deepest.distance + ALL_LEVEL * extent;
+    if contacts.iter().all(|contact| contact.distance <= level) {
         return None;
     }
-    let mut spread = Spread::new(ONE_DEPTH * extent);
-    // Of equally deep ones, one at the rim leaves room for the others.
-    let first = greatest(contacts, |contact| {
-        (height(contact) <= spread.tie).then(|| away(contact))
-    })?;
-    spread.push(first);
-    for place in 1..MAX_POINTS {
-        let without = parts.saturating_sub(spread.parts);
-        let is_reserved = without >= MAX_POINTS - place;
-        let room = spread.room();
-        let best = greatest(contacts, |contact| {
-            let is_new = !spread.contains(contact);
-            let is_allowed = is_new && (!is_reserved || spread.would_serve(contact));
-            is_allowed.then(|| room.at(contact.at) - RISE * height(contact))
-        });
-        let Some(best) = best else {
-            break;
-        };
-        spread.push(best);
+    let spread = |parts| Spread::over(contacts, deepest, ONE_DEPTH * extent, parts);
+    let bears = |spread: &Spread| spread.bears(level, BEARING_WIDTH * extent);
+    let free = spread(0);
+    if parts > MAX_POINTS {
+        return Some(free);
     }
-    Some(spread)
+    let shared = spread(parts);
+    Some(if bears(&shared) || !bears(&free) {
+        shared
+    } else {
+        free
+    })
+}
+
+impl Spread {
+    /// The deepest contact, and three others: each as far as possible from those before it, less its height
+    /// above the deepest. The last ones are left to `parts` that have none yet.
+    fn over(contacts: &[PartContact], deepest: &PartContact, tie: Real, parts: usize) -> Self {
+        let mut spread = Self::new(tie);
+        let height = |contact: &PartContact| contact.distance - deepest.distance;
+        // Of equally deep ones, one at the rim leaves room for the others.
+        let first = greatest(contacts, |contact| {
+            (height(contact) <= tie).then(|| contact.at.distance(deepest.at))
+        });
+        spread.push(first.unwrap_or(deepest));
+        for place in 1..MAX_POINTS {
+            let without = parts.saturating_sub(spread.parts);
+            let is_reserved = without >= MAX_POINTS - place;
+            let room = spread.room();
+            let best = greatest(contacts, |contact| {
+                let is_new = !spread.contains(contact);
+                let is_allowed = is_new && (!is_reserved || spread.would_serve(contact));
+                is_allowed.then(|| room.at(contact.at) - RISE * height(contact))
+            });
+            let Some(best) = best else {
+                break;
+            };
+            spread.push(best);
+        }
+        spread
+    }
 }
 
 /// The contact with the greatest worth, of those that have one.

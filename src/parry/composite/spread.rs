@@ -65,6 +65,15 @@ impl Spread {
         contact.above <= self.tie && !self.serves(contact.manifold)
     }
 
+    /// Whether the first three are not above `level` and at least so wide apart that a body may lie on them.
+    pub fn bears(&self, level: Real, width: Real) -> bool {
+        let [Some(a), Some(b), Some(c), _] = &self.contacts else {
+            return false;
+        };
+        [a, b, c].iter().all(|contact| contact.distance <= level)
+            && Side::new(a.at, b.at).right_of(c.at).abs() >= width
+    }
+
     /// Whether it is the deepest contact of a part that has none here, and the first such after those `before` it.
     pub fn lacks(&self, contact: &PartContact, before: &[PartContact]) -> bool {
         let mut of_part = before

@@ -93,6 +93,23 @@ pub fn prism(sides: u32, radius: Real, half_height: Real) -> Result<SharedShape,
     hull(&points, &format!("a prism of {sides} sides"))
 }
 
+/// A table of hulls that lies on its top: a square of 12 cm, 12 mm thick. Its legs are at the corners and end
+/// within the top, 6 mm above the ground.
+pub fn upturned_table(legs: usize) -> Result<SharedShape, String> {
+    let mut parts = vec![(
+        Pose::translation(0.0, 0.006, 0.0),
+        cuboid(Vector::new(0.06, 0.006, 0.06))?,
+    )];
+    let leg = cuboid(Vector::new(0.006, 0.036, 0.006))?;
+    for (x, z) in [(1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0)]
+        .into_iter()
+        .take(legs)
+    {
+        parts.push((Pose::translation(0.051 * x, 0.042, 0.051 * z), leg.clone()));
+    }
+    Ok(SharedShape::compound(parts))
+}
+
 /// A cuboid of these half extents as a hull.
 pub fn cuboid(half: Vector) -> Result<SharedShape, String> {
     hull(&Cuboid::new(half).to_trimesh().0, "the corners of a cuboid")
