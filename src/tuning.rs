@@ -119,6 +119,13 @@ pub(crate) const MAX_NEWTON_STEPS: usize = 5;
 /// Then flat sides are tried first.
 pub(crate) const SEEMS_FLAT: f64 = 1e-5;
 
+/// Contacts also keep their places while the normal turns by less than 6 degrees (cosine), if no distance changes by more
+/// than this share of the smaller shape's radius: a needle rocks on two edges a millimetre apart, and turns by two
+/// degrees in each step. With new contacts in each step, it would rock for ever. A sphere of 642 vertices, which rolls
+/// from facet to facet, changes its distances by three times as much.
+pub(crate) const ROCKING_COS: f64 = 0.994_522;
+pub(crate) const ROCKING_RISE: f64 = 1e-3;
+
 /// Manifolds whose normals have at least this cosine lie in one plane: the angle, five degrees, up to which
 /// rapier merges them.
 pub(crate) const ONE_PLANE_COS: f32 = 0.996;

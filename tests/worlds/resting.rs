@@ -401,6 +401,25 @@ fn heaps_of_small_hulls_sleep() {
     }
 }
 
+/// A needle lies on two edges that are a millimetre apart, and rocks by two degrees in each step. With contacts
+/// chosen anew in each step, one or two of a heap rocked for ever.
+#[test]
+fn heaps_of_needles_sleep() {
+    for seed in [100, 104, 109] {
+        let params = SceneParams {
+            seed,
+            size: Some(0.12),
+            friction: Some(0.2),
+            ..SceneParams::new(HullSource::Own, 100)
+        };
+        let dispatcher = Some(IsaGjkDispatcher::default());
+        let heap = scenes::build(Scene::Needles, &params, dispatcher);
+        let mut heap = heap.expect("a valid scene");
+        let frames = frames_until_asleep(&mut heap.physics, 300);
+        assert!(frames.is_some(), "seed {seed}: awake");
+    }
+}
+
 /// 150 stones above a floor, between four walls.
 fn heap(seed: u64, vertices: u32, size: Real, narrow_phase: NarrowPhase) -> PhysicsWorld {
     let mut world = PhysicsWorld {

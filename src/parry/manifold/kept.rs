@@ -18,8 +18,9 @@ use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
 use crate::pose::RelativePose;
 use crate::query::{LastContacts, Proximity, first_least};
-use crate::simd::{DVec3x4, coordinates, widened};
+use crate::simd::{DVec3x4, LANES, coordinates, widened};
 use crate::tolerance::{KEPT_ANGLE_COS, KEPT_DEPTH, KEPT_DRIFT};
+use crate::tuning::{ROCKING_COS, ROCKING_RISE};
 
 impl<M, C> KernelManifold<'_, M, C> {
     /// Reads the contacts at the present pose, if there are any. Lanes beyond the last contact repeat it.
@@ -74,7 +75,8 @@ impl<M, C> KernelManifold<'_, M, C> {
     ) -> Option<usize> {
         let old_normals = [self.manifold.local_n1, self.manifold.local_n2];
         let last = last?;
-        if !normals.are_near(self.order.to_kernel(old_normals)) {
+        let turn_cos = normals.turn_cos(self.order.to_kernel(old_normals));
+        if turn_cos < ROCKING_COS {
             return None;
         }
         let normal = normals.exact[0];
@@ -82,6 +84,9 @@ impl<M, C> KernelManifold<'_, M, C> {
             return None;
         }
         let distances = last.distances(normal).to_array();
+        if turn_cos < KEPT_ANGLE_COS && !self.rise_within(distances, ROCKING_RISE * radius) {
+            return None;
+        }
         let deepest = first_least(distances);
         let signed_distance = signed_distance - (self.border_radii[0] + self.border_radii[1]);
         let excess = distances[deepest] - signed_distance;
@@ -95,14 +100,19 @@ impl<M, C> KernelManifold<'_, M, C> {
         self.set_normals(normals.rounded);
         Some(deepest)
     }
+
+    /// Whether no contact's distance differs by more than this from that of the previous update.
+    fn rise_within(&self, distances: [f64; LANES], most: f64) -> bool {
+        let mut points = self.manifold.points.iter().zip(distances);
+        points.all(|(old, now)| (now - f64::from(old.dist)).abs() <= most)
+    }
 }
 
 impl Normals {
-    /// Whether they are close to those of the manifold.
+    /// The cosine of the larger of the angles by which they have turned from those of the manifold.
     #[inline]
-    fn are_near(&self, [old_1, old_2]: [Vec3; 2]) -> bool {
+    fn turn_cos(&self, [old_1, old_2]: [Vec3; 2]) -> f64 {
         let [new_1, new_2] = self.exact;
-        old_1.as_dvec3().dot(new_1) >= KEPT_ANGLE_COS
-            && old_2.as_dvec3().dot(new_2) >= KEPT_ANGLE_COS
+        old_1.as_dvec3().dot(new_1).min(old_2.as_dvec3().dot(new_2))
     }
 }
