@@ -119,11 +119,12 @@ pub(crate) const MAX_NEWTON_STEPS: usize = 5;
 /// Then flat sides are tried first.
 pub(crate) const SEEMS_FLAT: f64 = 1e-5;
 
-/// Contacts also keep their places while the normal turns by less than 6 degrees (cosine), if no distance changes by more
-/// than this share of the smaller shape's radius: a needle rocks on two edges a millimetre apart, and turns by two
-/// degrees in each step. With new contacts in each step, it would rock for ever. A sphere of 642 vertices, which rolls
-/// from facet to facet, changes its distances by three times as much.
+/// Contacts also keep their places while the normal turns by less than 6 degrees (cosine), if no distance changes much.
+/// A needle rocks on two edges a millimetre apart, and turns by two degrees in each step. With new contacts in each
+/// step, it would rock for ever.
 pub(crate) const ROCKING_COS: f64 = 0.994_522;
+/// How much they may change, as a share of the smaller shape's radius. They change by more on a sphere of 642 vertices
+/// that rolls from facet to facet. If its contacts stayed behind, it would not roll straight on.
 pub(crate) const ROCKING_RISE: f64 = 1e-3;
 
 /// Manifolds whose normals have at least this cosine lie in one plane: the angle, five degrees, up to which

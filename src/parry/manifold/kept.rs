@@ -75,8 +75,8 @@ impl<M, C> KernelManifold<'_, M, C> {
     ) -> Option<usize> {
         let old_normals = [self.manifold.local_n1, self.manifold.local_n2];
         let last = last?;
-        let turn_cos = normals.turn_cos(self.order.to_kernel(old_normals));
-        if turn_cos < ROCKING_COS {
+        let turned_less = |cos| normals.are_near(self.order.to_kernel(old_normals), cos);
+        if !turned_less(ROCKING_COS) {
             return None;
         }
         let normal = normals.exact[0];
@@ -84,7 +84,7 @@ impl<M, C> KernelManifold<'_, M, C> {
             return None;
         }
         let distances = last.distances(normal).to_array();
-        if turn_cos < KEPT_ANGLE_COS && !self.rise_within(distances, ROCKING_RISE * radius) {
+        if !turned_less(KEPT_ANGLE_COS) && !self.rise_within(distances, ROCKING_RISE * radius) {
             return None;
         }
         let deepest = first_least(distances);
@@ -109,10 +109,10 @@ impl<M, C> KernelManifold<'_, M, C> {
 }
 
 impl Normals {
-    /// The cosine of the larger of the angles by which they have turned from those of the manifold.
+    /// Whether they have turned from those of the manifold by at most an angle with this cosine.
     #[inline]
-    fn turn_cos(&self, [old_1, old_2]: [Vec3; 2]) -> f64 {
+    fn are_near(&self, [old_1, old_2]: [Vec3; 2], cos: f64) -> bool {
         let [new_1, new_2] = self.exact;
-        old_1.as_dvec3().dot(new_1).min(old_2.as_dvec3().dot(new_2))
+        old_1.as_dvec3().dot(new_1) >= cos && old_2.as_dvec3().dot(new_2) >= cos
     }
 }
