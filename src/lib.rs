@@ -89,6 +89,8 @@ mod parry;
 mod pose;
 mod primitive;
 pub mod query;
+#[cfg(feature = "rapier")]
+pub mod rapier;
 mod ray_cast;
 mod simd;
 mod simplex;

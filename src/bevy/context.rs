@@ -6,8 +6,8 @@ use bevy_ecs::change_detection::Tick;
 use bevy_ecs::entity::{Entity, EntityHashMap};
 use bevy_ecs::prelude::Resource;
 use rapier3d::prelude::{
-    self as rapier, ActiveEvents, ColliderBuilder, ColliderHandle, NarrowPhase, PhysicsWorld,
-    RigidBodyBuilder, RigidBodyHandle,
+    self as rapier, ActiveEvents, ColliderBuilder, ColliderHandle, PhysicsWorld, RigidBodyBuilder,
+    RigidBodyHandle,
 };
 
 use super::collision::{CollisionEvent, CollisionRecorder};
@@ -64,7 +64,7 @@ impl Default for PhysicsContext {
     /// An empty world whose hulls meet through this crate's dispatcher.
     fn default() -> Self {
         let dispatcher = IsaGjkDispatcher::default();
-        let narrow_phase = NarrowPhase::with_query_dispatcher(dispatcher.clone());
+        let narrow_phase = crate::rapier::narrow_phase(dispatcher.clone());
         Self {
             world: PhysicsWorld {
                 narrow_phase,
