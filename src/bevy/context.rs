@@ -6,8 +6,8 @@ use bevy_ecs::change_detection::Tick;
 use bevy_ecs::entity::{Entity, EntityHashMap};
 use bevy_ecs::prelude::Resource;
 use rapier3d::prelude::{
-    self as rapier, ActiveEvents, ColliderBuilder, ColliderHandle, PhysicsWorld, RigidBodyBuilder,
-    RigidBodyHandle,
+    self as rapier, ActiveEvents, ColliderBuilder, ColliderHandle, NarrowPhase, PhysicsWorld,
+    RigidBodyBuilder, RigidBodyHandle,
 };
 
 use super::collision::{CollisionEvent, CollisionRecorder};
