@@ -132,6 +132,8 @@ fn continuous_collision_detection_stops_a_fast_hull() {
 
 #[cfg(feature = "serde-serialize")]
 mod snapshots {
+    use isa_gjk::IsaGjkDispatcher;
+
     use super::*;
 
     fn save(world: &PhysicsWorld) -> Vec<u8> {
