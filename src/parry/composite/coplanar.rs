@@ -149,16 +149,15 @@ fn choose(contacts: &[PartContact], parts: usize) -> Option<Spread> {
     }
     let spread = |parts| Spread::over(contacts, deepest, ONE_DEPTH * extent, parts);
     let bears = |spread: &Spread| spread.bears(level, BEARING_WIDTH * extent);
-    let free = spread(0);
     if parts > MAX_POINTS {
-        return Some(free);
+        return Some(spread(0));
     }
     let shared = spread(parts);
-    Some(if bears(&shared) || !bears(&free) {
-        shared
-    } else {
-        free
-    })
+    if bears(&shared) {
+        return Some(shared);
+    }
+    let free = spread(0);
+    Some(if bears(&free) { free } else { shared })
 }
 
 impl Spread {
