@@ -10,6 +10,7 @@ pub mod families;
 pub mod generate;
 pub mod kinds;
 pub mod memory;
+pub mod numbers;
 pub mod oracle;
 pub mod pair;
 pub mod pose;

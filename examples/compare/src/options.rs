@@ -7,6 +7,7 @@ use clap::{Parser, ValueEnum, value_parser};
 use rapier3d::prelude::Real;
 
 use crate::measure::RunLength;
+use testkit::numbers::positive;
 use testkit::scenes::{CurvedScene, HullSource, Hulls, Scene, SceneParams};
 
 /// How long a world is watched until its bodies sleep: most need two to six seconds.
@@ -38,11 +39,11 @@ pub struct Options {
 
     /// The largest extent of the largest body, in metres [default: 5 to 40 cm for rocks, stones,
     /// dice, pebbles, cubes, plates, needles, breach, rubble and bursts; about a metre elsewhere]
-    #[arg(long, value_parser = positive)]
+    #[arg(long, value_parser = positive::<Real>)]
     size: Option<Real>,
 
     /// Friction of all colliders [default: rapier's]
-    #[arg(long, value_parser = positive)]
+    #[arg(long, value_parser = positive::<Real>)]
     friction: Option<Real>,
 
     /// Steps per second
@@ -184,14 +185,6 @@ impl FromStr for Shape {
             _ => Err("give random, prism, box, real or the path of an .obj file".to_owned()),
         }
     }
-}
-
-fn positive(text: &str) -> Result<Real, String> {
-    let number: Real = text.parse().map_err(|_| "give a number".to_owned())?;
-    let is_positive = number.is_finite() && number > 0.0;
-    is_positive
-        .then_some(number)
-        .ok_or_else(|| "give a number above zero".to_owned())
 }
 
 impl Options {

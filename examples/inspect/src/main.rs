@@ -26,6 +26,7 @@ use rapier3d::prelude::{Pose, Real, Rotation};
 use picture::Snapshot;
 use recorded::Recorded;
 use svg::YAW;
+use testkit::numbers::finite;
 use testkit::scenes::{HullSource, hulls};
 
 /// Two hulls meet, roll over each other and part again. Draws one frame of it as an SVG picture. With
@@ -54,7 +55,7 @@ struct Options {
     seed: u64,
 
     /// Contacts reach this far, in metres; the hulls have a radius of half a metre
-    #[arg(long, default_value_t = 0.02, value_parser = finite)]
+    #[arg(long, default_value_t = 0.02, value_parser = finite::<f64>)]
     prediction: f64,
 
     /// Magnifies the contact, or the gap
@@ -70,7 +71,7 @@ struct Options {
     number: usize,
 
     /// Radians by which the picture of the recorded pair is turned: at 0 the normal points to the right
-    #[arg(long, default_value_t = YAW, value_parser = finite, requires = "pair")]
+    #[arg(long, default_value_t = YAW, value_parser = finite::<f64>, requires = "pair")]
     yaw: f64,
 
     /// Print a test of the recorded pair, and draw nothing
@@ -186,13 +187,8 @@ fn ask<'a>(
     })
 }
 
-fn finite(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|number: &f64| number.is_finite());
-    number.ok_or_else(|| "give a number".to_owned())
-}
-
 fn at_least_one(text: &str) -> Result<f64, String> {
-    let number = finite(text)?;
+    let number: f64 = finite(text)?;
     (number >= 1.0)
         .then_some(number)
         .ok_or_else(|| "give 1 or more".to_owned())

@@ -18,6 +18,7 @@ use serde_json::json;
 
 use film::Reel;
 use tape::Tape;
+use testkit::numbers::positive;
 use testkit::scenes::{self, HullSource, Hulls, Scene, SceneParams, World};
 
 /// The page, with gaps for the header and the tape.
@@ -50,7 +51,7 @@ struct Options {
     real: bool,
 
     /// Seconds to record
-    #[arg(long, default_value_t = 10.0, value_parser = positive)]
+    #[arg(long, default_value_t = 10.0, value_parser = positive::<f64>)]
     seconds: f64,
 
     /// Steps from one recorded frame to the next; the player moves evenly between them
@@ -80,8 +81,8 @@ struct Options {
     film: Option<PathBuf>,
 
     /// Metres from the left to the right of the picture
-    #[arg(long, default_value_t = 8.0, value_parser = positive, requires = "film")]
-    extent: f64,
+    #[arg(long, default_value_t = 8.0, value_parser = positive::<f32>, requires = "film")]
+    extent: f32,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -158,14 +159,6 @@ fn main() -> ExitCode {
     }
 }
 
-fn positive(text: &str) -> Result<f64, String> {
-    let number: f64 = text.parse().map_err(|_| "give a number".to_owned())?;
-    let is_positive = number.is_finite() && number > 0.0;
-    is_positive
-        .then_some(number)
-        .ok_or_else(|| "give a number above zero".to_owned())
-}
-
 fn write_page(options: &Options, params: &SceneParams) -> Result<(), Box<dyn Error>> {
     let dispatcher = match options.dispatcher {
         Dispatcher::Ours => Some(IsaGjkDispatcher::default()),
@@ -202,7 +195,7 @@ fn write_film(options: &Options, params: &SceneParams, out: &Path) -> Result<(),
     let mut reels = Vec::new();
     for (title, dispatcher) in both {
         let mut world = scenes::build(options.scene, params, dispatcher)?;
-        let mut reel = Reel::new(title, options.extent as f32);
+        let mut reel = Reel::new(title, options.extent);
         options.run(&mut world, |world| reel.record(world));
         reels.push(reel);
     }
