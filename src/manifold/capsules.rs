@@ -34,16 +34,13 @@ pub enum Place {
     SecondEnd,
 }
 
-impl Place {
-    pub const ALL: [Self; 3] = [Self::Deepest, Self::FirstEnd, Self::SecondEnd];
-}
-
 /// The contacts of two capsules in one frame.
 #[derive(Clone, Debug)]
 pub struct CapsuleContacts {
     /// A unit vector from the first to the second.
     pub normal: DVec3,
-    contacts: [Option<CapsuleContact>; 3],
+    /// At least one.
+    pub in_places: [Option<CapsuleContact>; 3],
 }
 
 impl CapsuleContacts {
@@ -69,13 +66,13 @@ impl CapsuleContacts {
         let [first_end, second_end] = ends;
         Some(Self {
             normal,
-            contacts: [is_deepest.then_some(nearest), first_end, second_end],
+            in_places: [is_deepest.then_some(nearest), first_end, second_end],
         })
     }
 
-    /// At least one.
+    /// The contacts, at least one.
     pub fn iter(&self) -> impl Iterator<Item = &CapsuleContact> {
-        self.contacts.iter().flatten()
+        self.in_places.iter().flatten()
     }
 }
 

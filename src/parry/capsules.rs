@@ -1,44 +1,36 @@
 //! Manifolds of two capsules. parry's routine finds only one contact, with which logs never rest.
 
 use parry3d::math::{Pose, Real};
-use parry3d::query::{ContactManifold, TrackedContact, Unsupported};
+use parry3d::query::{TrackedContact, Unsupported};
 use parry3d::shape::{Capsule as ParryCapsule, PackedFeatureId, Shape};
 
 use crate::manifold::capsules::{Capsule, CapsuleContact, CapsuleContacts, Place};
 use crate::map_pair::map_pair;
+use crate::parry::manifold::ErasedManifold;
 use crate::parry::pair::valid_pose;
 use crate::pose::RelativePose;
 
 /// Updates the manifold of two capsules. Other shapes are not supported.
-pub(crate) fn update_capsules<M, C: Default + Copy>(
+pub(crate) fn update_capsules(
     pos12: &Pose,
     shapes: [&dyn Shape; 2],
     prediction: Real,
-    manifold: &mut ContactManifold<M, C>,
+    manifold: &mut ErasedManifold<'_>,
 ) -> Result<(), Unsupported> {
     let (pose, capsules) = pair_in_frame_1(pos12, shapes)?;
     let Some(contacts) = CapsuleContacts::new(capsules, prediction.into()) else {
         manifold.clear();
         return Ok(());
     };
-    let data = Place::ALL.map(|place| inherited(&manifold.points, place));
-    manifold.local_n1 = contacts.normal.as_vec3();
-    manifold.local_n2 = pose.direction_to_2(-contacts.normal).as_vec3();
-    let tracked = |contact: &CapsuleContact| {
+    *manifold.local_n1 = contacts.normal.as_vec3();
+    *manifold.local_n2 = pose.direction_to_2(-contacts.normal).as_vec3();
+    let tracked = |contact: CapsuleContact| {
         let id = id_of(contact.place);
         let [p1, p2] = contact.points;
-        TrackedContact {
-            local_p1: p1.as_vec3(),
-            local_p2: pose.point_to_2(p2).as_vec3(),
-            dist: contact.distance as Real,
-            fid1: id,
-            fid2: id,
-            data: data[contact.place as usize],
-        }
+        let p2 = pose.point_to_2(p2).as_vec3();
+        TrackedContact::new(p1.as_vec3(), p2, id, id, contact.distance as Real)
     };
-    // Reuses the memory of the points, so that a pair at rest allocates nothing.
-    manifold.points.clear();
-    manifold.points.extend(contacts.iter().map(tracked));
+    manifold.replace_by_ids(&contacts.in_places.map(|contact| contact.map(tracked)));
     Ok(())
 }
 
@@ -49,16 +41,6 @@ fn id_of(place: Place) -> PackedFeatureId {
         Place::FirstEnd => PackedFeatureId::vertex(0),
         Place::SecondEnd => PackedFeatureId::vertex(1),
     }
-}
-
-/// The data of the old contact at this place.
-fn inherited<C: Default + Copy>(contacts: &[TrackedContact<C>], place: Place) -> C {
-    let id = id_of(place);
-    let is_same = |old: &&TrackedContact<C>| old.fid1 == id && old.fid2 == id;
-    contacts
-        .iter()
-        .find(is_same)
-        .map_or_else(C::default, |old| old.data)
 }
 
 /// Two capsules in frame 1. Other shapes are not supported.

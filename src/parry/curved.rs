@@ -6,9 +6,10 @@ use parry3d::shape::{Shape, ShapeType};
 use crate::curved::SurfacePieces;
 use crate::parry::capsules::update_capsules;
 use crate::parry::convert::Core;
-use crate::parry::manifold::{CurvedPair, CurvedUpdate, UpdateManifold};
+use crate::parry::manifold::UpdateManifold;
 use crate::parry::operand::is_hull;
 use crate::parry::order::PairOrder;
+use crate::parry::pair::Pair;
 use crate::parry::workspace::ThreadWorkspace;
 
 /// Whether a shape is a cylinder or a cone.
@@ -26,21 +27,26 @@ pub(crate) fn is_hull_or_curved(shape: &dyn Shape) -> bool {
 }
 
 /// Brings a manifold up to date; pairs of other shapes are not supported.
-pub(crate) fn update_without_hull<M: Default, C: Default + Copy>(
+pub(crate) fn update_without_hull(
     shapes: [&dyn Shape; 2],
-    mut update: UpdateManifold<'_, M, C>,
+    update: &mut UpdateManifold<'_>,
 ) -> Result<(), Unsupported> {
     // The curved shape comes second in the kernels.
     match PairOrder::with_second(shapes.map(is_curved)) {
-        Some(order) => update_curved(order, shapes, &mut update.curved()),
-        None => update_capsules(update.pos12, shapes, update.prediction, update.manifold),
+        Some(order) => update_curved(order, shapes, update),
+        None => update_capsules(
+            update.pos12,
+            shapes,
+            update.prediction,
+            &mut update.manifold,
+        ),
     }
 }
 
 fn update_curved(
     order: PairOrder,
     shapes: [&dyn Shape; 2],
-    update: &mut CurvedUpdate<'_>,
+    update: &mut UpdateManifold<'_>,
 ) -> Result<(), Unsupported> {
     let [first, second] = order.to_kernel(shapes);
     // One by one: as parts of a pair they would be copied.
@@ -65,7 +71,7 @@ fn update_curved(
 struct PairUpdate<'u, 'a> {
     border_radii: [f64; 2],
     order: PairOrder,
-    update: &'u mut CurvedUpdate<'a>,
+    update: &'u mut UpdateManifold<'a>,
 }
 
 impl PairUpdate<'_, '_> {
@@ -86,11 +92,12 @@ impl PairUpdate<'_, '_> {
         first: &impl SurfacePieces,
         second: &impl SurfacePieces,
     ) -> Result<(), Unsupported> {
-        let pair = CurvedPair {
-            shapes: (first, second),
+        let pair = Pair {
+            hull: first,
+            other: second,
             border_radii: self.border_radii,
             order: self.order,
         };
-        ThreadWorkspace::with(|thread| self.update.run(&pair, &mut thread.workspace))
+        ThreadWorkspace::with(|thread| self.update.update_curved(&pair, &mut thread.workspace))
     }
 }

@@ -10,7 +10,6 @@ pub(crate) mod dispatcher;
 mod half_space;
 mod hull_cache;
 pub(crate) mod hull_shape;
-mod instances;
 mod int_hash;
 mod manifold;
 mod operand;

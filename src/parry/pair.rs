@@ -6,11 +6,10 @@ use parry3d::query::Unsupported;
 use crate::curved::SurfacePieces;
 use crate::hull::Hull;
 use crate::parry::convert::HalfSpace;
-use crate::parry::instances::HullPartner;
 use crate::parry::order::PairOrder;
 use crate::parry::workspace::Workspace;
 use crate::pose::{RelativePose, ValidPose};
-use crate::support::{Cso, Support};
+use crate::support::{Cso, Polytope, Support};
 use crate::tolerance::MIN_DIRECTED_DISTANCE;
 
 /// A hull and another shape in the kernels' order. Frame 1 is that of the hull. In scene queries the first
@@ -93,7 +92,7 @@ pub(crate) trait PairVisitor: Sized {
     type Answer;
 
     /// The other shape is a polytope.
-    fn visit<B: HullPartner>(
+    fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,

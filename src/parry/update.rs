@@ -7,7 +7,7 @@ use crate::map_pair::map_pair;
 use crate::parry::constraints::Constraints;
 use crate::parry::curved::update_without_hull;
 use crate::parry::hull_cache::epoch::Epoch;
-use crate::parry::manifold::UpdateManifold;
+use crate::parry::manifold::{ErasedManifold, UpdateManifold};
 use crate::parry::operand::Operand;
 use crate::parry::recording::{PairView, Recorder, bare};
 use crate::parry::visit;
@@ -100,25 +100,17 @@ impl<F> Updater<'_, F> {
         C: Default + Copy + Send + Sync,
         F: PersistentQueryDispatcher<M, C>,
     {
-        let [g1, g2] = map_pair(*operands, |operand| operand.shape);
-        let has_hull = operands[0].is_hull() || operands[1].is_hull();
         let update = UpdateManifold {
             pos12,
             prediction,
             constraints,
-            manifold: &mut *manifold,
+            manifold: ErasedManifold::new(manifold),
             stats: self.stats,
         };
-        if has_hull {
-            if visit::operands(operands, self.epoch, update).is_ok() {
-                return Ok(());
-            }
-            self.stats.record_left(visit::why_left(pos12, [g1, g2]));
-        } else if update_without_hull([g1, g2], update).is_ok() {
+        if answer_by_us(operands, self.epoch, update).is_ok() {
             return Ok(());
-        } else {
-            self.stats.record_left(Left::NoHull);
         }
+        let [g1, g2] = map_pair(*operands, |operand| operand.shape);
         let [c1, c2] = *constraints;
         c1.with(|c1| {
             c2.with(|c2| {
@@ -126,5 +118,25 @@ impl<F> Updater<'_, F> {
                     .contact_manifold_convex_convex(pos12, g1, g2, c1, c2, prediction, manifold)
             })
         })
+    }
+}
+
+/// Fails if the pair is left to the fallback. It is generic over nothing, so that this crate has the code, and not
+/// every program that steps a world.
+fn answer_by_us(
+    operands: &[Operand<'_>; 2],
+    epoch: Epoch,
+    mut update: UpdateManifold<'_>,
+) -> Result<(), Unsupported> {
+    let shapes = map_pair(*operands, |operand| operand.shape);
+    if operands[0].is_hull() || operands[1].is_hull() {
+        visit::operands(operands, epoch, &mut update).inspect_err(|_| {
+            update
+                .stats
+                .record_left(visit::why_left(update.pos12, shapes))
+        })
+    } else {
+        update_without_hull(shapes, &mut update)
+            .inspect_err(|_| update.stats.record_left(Left::NoHull))
     }
 }

@@ -20,10 +20,10 @@ use crate::stats::Left;
 pub(crate) fn shapes<V: PairVisitor>(
     shape_1: &dyn Shape,
     shape_2: &dyn Shape,
-    visitor: V,
+    mut visitor: V,
 ) -> Result<V::Answer, Unsupported> {
     let both = map_pair([shape_1, shape_2], Operand::new);
-    operands(&both, Epoch::of_pair(), visitor)
+    operands(&both, Epoch::of_pair(), &mut visitor)
 }
 
 /// Like [`shapes`], for shapes that do not change during `epoch`.
@@ -32,7 +32,7 @@ pub(crate) fn shapes<V: PairVisitor>(
 pub(crate) fn operands<V: PairVisitor>(
     [operand_1, operand_2]: &[Operand<'_>; 2],
     epoch: Epoch,
-    mut visitor: V,
+    visitor: &mut V,
 ) -> Result<V::Answer, Unsupported> {
     let are_hulls = [operand_1.is_hull(), operand_2.is_hull()];
     let order = PairOrder::with_first(are_hulls).ok_or(Unsupported)?;
@@ -61,8 +61,8 @@ pub(crate) fn operands<V: PairVisitor>(
                 visitor.visit(&pair, workspace)
             },
         ),
-        [true, false] => hull(operand_1).visit(operand_2.shape, &mut visitor),
-        [false, _] => hull(operand_2).visit(operand_1.shape, &mut visitor),
+        [true, false] => hull(operand_1).visit(operand_2.shape, visitor),
+        [false, _] => hull(operand_2).visit(operand_1.shape, visitor),
     }
 }
 

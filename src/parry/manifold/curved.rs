@@ -1,95 +1,63 @@
 //! Manifolds of pairs with a cylinder or a cone.
 
 use glam::{DVec3, Vec3};
-use parry3d::math::{Pose, Real};
+use parry3d::math::Pose;
 use parry3d::query::Unsupported;
 
-use super::curved_manifold::CurvedManifold;
-use super::kernel_manifold::AxisFrame;
+use super::kernel_manifold::{AxisFrame, KernelManifold};
 use super::normals::Normals;
-use super::still::{SettledContacts, Still};
-use crate::curved::{self, CurvedAnswer, CurvedQuery, Patch, SurfacePieces};
+use super::still::{SettledContacts, Still, is_settled};
+use super::update::UpdateManifold;
+use crate::curved::{self, CurvedAnswer, CurvedQuery, Hint, Patch, SurfacePieces};
 use crate::manifold::Contacts;
 use crate::parry::constraints::{ConstrainedPair, Constraints};
 use crate::parry::order::PairOrder;
-use crate::parry::pair::valid_pose;
+use crate::parry::pair::{Pair, valid_pose};
 use crate::parry::still_cache::StillPair;
 use crate::parry::workspace::Workspace;
-use crate::pose::RelativePose;
-use crate::query::{Feature, LastContacts, Proximity};
-use crate::stats::{Cost, SharedStats, Stage};
+use crate::query::{Feature, LastContacts, PairMemory, Proximity};
+use crate::stats::{Cost, Stage};
 use crate::support::{Cso, FaceId, VertexId};
 use crate::tolerance::{DEPTH_GAP, MIN_DIRECTED_DISTANCE, UNCORRECTED};
 use crate::tuning::ABSURD_DEPTH;
 
-/// Two shapes in the kernels' order.
-pub(crate) struct CurvedPair<'a, A, B> {
-    pub shapes: (&'a A, &'a B),
-    pub border_radii: [f64; 2],
-    pub order: PairOrder,
-}
-
-impl<'a, A, B> CurvedPair<'a, A, B> {
-    fn cso<'c>(&self, pose: &'c RelativePose) -> Cso<'c, A, B>
-    where
-        'a: 'c,
-    {
-        let (shape_1, shape_2) = self.shapes;
-        Cso {
-            shape_1,
-            shape_2,
-            pose,
-        }
-    }
-}
-
-/// Brings a manifold up to date.
-pub(crate) struct CurvedUpdate<'a> {
-    pub pos12: &'a Pose,
-    pub prediction: Real,
-    pub constraints: &'a [Constraints<'a>; 2],
-    pub(super) manifold: &'a mut dyn CurvedManifold,
-    pub stats: &'a SharedStats,
-}
-
-impl CurvedUpdate<'_> {
-    /// Of two shapes, at least one of which is curved.
-    pub fn run<A: SurfacePieces, B: SurfacePieces>(
+impl UpdateManifold<'_> {
+    /// For two shapes, at least one of which is curved.
+    pub fn update_curved<A: SurfacePieces, B: SurfacePieces>(
         &mut self,
-        pair: &CurvedPair<'_, A, B>,
+        pair: &Pair<'_, B, A>,
         workspace: &mut Workspace,
     ) -> Result<(), Unsupported> {
-        let pose = pair.order.pose(valid_pose(self.pos12)?);
+        let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
         let borders = pair.border_radii[0] + pair.border_radii[1];
         let touching = MIN_DIRECTED_DISTANCE * (cso.size() + borders);
         let max_distance = f64::from(self.prediction) + touching;
         let settled = self.settled_contacts(&cso, pair.order);
-        let still = settled.as_ref().map(|settled| &settled.still);
-        if self.hold_if_proved(pair, still, max_distance + borders, workspace) {
+        let reach = max_distance + borders;
+        if self.hold_if_proved(pair.border_radii, settled.as_ref(), reach, workspace) {
             return Ok(());
         }
-        let read = || self.manifold.last_contacts(pair.order, &pose);
-        let last = settled
-            .as_ref()
-            .map_or_else(read, |settled| Some(settled.last));
+        let frame = AxisFrame::of(&cso);
+        let mut manifold = KernelManifold::with_borders(&mut self.manifold, pair.order, frame);
+        let mut last = settled.as_ref().map(|settled| settled.last);
+        if last.is_none() {
+            manifold.read_contacts(&pose, &mut last);
+        }
         let mut cost = Cost::default();
-        let hint = self.manifold.hint(pair.order, AxisFrame::of(&cso), borders);
+        let hint = manifold.hint(borders);
         let mut query = CurvedQuery {
             cso: &cso,
             border_radii: pair.border_radii,
-            max_distance: max_distance + borders,
+            max_distance: reach,
             last: last.as_ref(),
             scratch: &mut workspace.curved,
             cost: &mut cost,
         };
         let (answer, mut stage) = query.run(hint).ok_or(Unsupported)?;
         match answer {
-            CurvedAnswer::SpheresApart => self.manifold.forget(),
-            CurvedAnswer::Separated(apart) => {
-                let (frame, order) = (AxisFrame::of(&cso), pair.order);
-                self.manifold.set_axis(order, frame, apart.axis, apart.ids);
-            }
+            CurvedAnswer::SpheresApart => manifold.forget(),
+            CurvedAnswer::Separated(apart) => manifold.set_axis(apart.axis, apart.ids),
             CurvedAnswer::Near {
                 signed_distance,
                 normal,
@@ -105,6 +73,7 @@ impl CurvedUpdate<'_> {
                     max_distance,
                     last: last.as_ref(),
                 };
+                let still = settled.as_ref().map(|settled| &settled.still);
                 let is_kept = self.update_contacts(&near, still, workspace);
                 if is_kept && stage == Stage::Feature {
                     stage = Stage::Kept;
@@ -122,30 +91,14 @@ impl CurvedUpdate<'_> {
         order: PairOrder,
     ) -> Option<SettledContacts> {
         let are_free = matches!(self.constraints, [Constraints::None, Constraints::None]);
-        let key = self
-            .manifold
-            .settled_key(order, cso.pose)
-            .filter(|_| are_free)?;
-        let pair = StillPair::of(cso, self.pos12.rotation, key)?;
-        self.manifold.settled_contacts(order, cso.pose, pair)
-    }
-
-    /// Only measures the contacts of a pair at rest anew, if that is proved to be enough. Returns whether it is.
-    fn hold_if_proved<A, B>(
-        &mut self,
-        pair: &CurvedPair<'_, A, B>,
-        still: Option<&Still>,
-        max_distance: f64,
-        workspace: &Workspace,
-    ) -> bool {
-        let proofs = &workspace.still_cache;
-        let is_proved = |still: &&Still| still.is_proved(proofs, max_distance, pair.border_radii);
-        let held = still.filter(is_proved);
-        if let Some(still) = held {
-            self.manifold.hold(still);
-            self.stats.record_free(Stage::Still);
+        if !are_free || !is_settled(&self.manifold, order, cso.pose) {
+            return None;
         }
-        held.is_some()
+        let pair = StillPair::of(cso, self.pos12.rotation, self.manifold.key())?;
+        let manifold = KernelManifold::with_borders(&mut self.manifold, order, AxisFrame::First);
+        let mut settled = None;
+        SettledContacts::read(&manifold, cso.pose, pair, &mut settled);
+        settled
     }
 
     /// Returns whether the contacts stayed where they were.
@@ -162,11 +115,29 @@ impl CurvedUpdate<'_> {
             return true;
         }
         let patch = &mut workspace.curved.patch;
+        let frame = AxisFrame::of(near.cso);
+        let mut manifold = KernelManifold::with_borders(&mut self.manifold, near.order, frame);
         if let [Constraints::None, Constraints::None] = self.constraints {
-            return near.update(self.manifold, patch);
+            return near.update(&mut manifold, patch);
         }
-        near.update_constrained(self, patch);
+        near.update_constrained((self.constraints, self.pos12), &mut manifold, patch);
         false
+    }
+}
+
+impl KernelManifold<'_, '_> {
+    /// The memory of the pair. The cores may be apart although the shapes, with their `borders`, overlap.
+    fn hint(&self, borders: f64) -> Hint {
+        if let Some(least) = self.least_distance() {
+            return match self.normals() {
+                Some(normals) => Hint::Contact(normals, f64::from(least) + borders < 0.0),
+                None => Hint::None,
+            };
+        }
+        match self.memory(None) {
+            PairMemory::Axis(axis, ids) => Hint::Apart(axis, ids),
+            _ => Hint::None,
+        }
     }
 }
 
@@ -195,16 +166,16 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
     }
 
     /// Keeps the contacts where they are, or chooses new ones. Returns whether they stayed.
-    fn update(&self, manifold: &mut dyn CurvedManifold, patch: &mut Patch) -> bool {
+    fn update(&self, manifold: &mut KernelManifold<'_, '_>, patch: &mut Patch) -> bool {
         let near = self.proximity();
         let normals = Normals::of(&near, self.cso.pose);
         let radius = self.cso.min_radius();
-        let is_kept = manifold.keep_places(self.order, self.last, self.least, &normals, radius);
-        if !is_kept {
+        let kept = manifold.keep_places(self.last, self.least, &normals, radius);
+        if kept.is_none() {
             patch.complete(self.cso, self.border_radii);
-            manifold.set_contacts(self.order, normals.rounded, &self.contacts(patch));
+            manifold.set_contacts(normals.rounded, &self.contacts(patch));
         }
-        is_kept
+        kept.is_some()
     }
 
     fn contacts(&self, patch: &Patch) -> Contacts {
@@ -214,14 +185,18 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
     }
 
     /// Like [`update`](Self::update), along normals that the constraints correct.
-    fn update_constrained(&self, update: &mut CurvedUpdate<'_>, patch: &mut Patch) {
-        let manifold = &mut *update.manifold;
+    fn update_constrained(
+        &self,
+        (constraints, pos12): (&[Constraints<'_>; 2], &Pose),
+        manifold: &mut KernelManifold<'_, '_>,
+        patch: &mut Patch,
+    ) {
         let normals = Normals::of(&self.proximity(), self.cso.pose);
         let pair = ConstrainedPair {
             cso: self.cso,
             order: self.order,
-            constraints: *update.constraints,
-            pos12: update.pos12,
+            constraints: *constraints,
+            pos12,
             max_distance: self.max_distance + self.border_radii[0] + self.border_radii[1],
         };
         let Some(found) = pair.correct(self.order.to_caller(normals.rounded)) else {
@@ -232,20 +207,19 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         if corrected[0].abs_diff_eq(normals.rounded[0], UNCORRECTED) {
             self.update(manifold, patch);
         } else if let Some(contacts) = self.along(corrected, patch) {
-            manifold.set_contacts(self.order, corrected, &contacts);
+            manifold.set_contacts(corrected, &contacts);
         } else if self.least < 0.0 {
             // Overlapping shapes must be pushed apart, even if not along the corrected normal.
             patch.find(self.cso, self.normal, self.border_radii);
-            manifold.set_contacts(self.order, normals.rounded, &self.contacts(patch));
+            manifold.set_contacts(normals.rounded, &self.contacts(patch));
         } else {
             self.set_axis(manifold);
         }
     }
 
     /// Leaves no contact, but a place for the next query to start from.
-    fn set_axis(&self, manifold: &mut dyn CurvedManifold) {
-        let frame = AxisFrame::of(self.cso);
-        manifold.set_axis(self.order, frame, self.normal, [VertexId::default(); 2]);
+    fn set_axis(&self, manifold: &mut KernelManifold<'_, '_>) {
+        manifold.set_axis(self.normal, [VertexId::default(); 2]);
     }
 
     /// The contacts along a corrected normal, whose depth is not the one that the query found.

@@ -23,9 +23,9 @@ impl UpdateContacts for HalfSpaceContacts<'_> {
     }
 
     #[inline(always)]
-    fn update_contacts<M, C: Default + Copy>(
+    fn update_contacts(
         &mut self,
-        manifold: &mut KernelManifold<'_, M, C>,
+        manifold: &mut KernelManifold<'_, '_>,
         last: Option<&LastContacts>,
         near: &Proximity,
     ) -> bool {

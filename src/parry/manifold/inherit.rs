@@ -1,53 +1,72 @@
 //! The points of a manifold, and the data that they inherit from the previous frame.
 
+use std::array;
+
 use glam::Vec3;
 use parry3d::math::Real;
 use parry3d::query::TrackedContact;
 use parry3d::shape::PackedFeatureId;
 
-use super::kernel_manifold::{self, KernelManifold};
+use super::packed_feature::pack;
 use crate::manifold::{Contacts, MAX_POINTS};
 use crate::map_pair::map_pair;
 use crate::parry::order::PairOrder;
 use crate::query::{Feature, contact_keys};
 use crate::simd::{f32x4, u32x4};
 
-impl<M, C: Default + Copy> KernelManifold<'_, M, C> {
-    /// Replaces the contacts. The new ones inherit the data (the solver's impulses) of the old ones.
-    #[inline(always)]
-    pub fn set_contacts(&mut self, normals: [Vec3; 2], contacts: &Contacts) {
-        debug_assert!(contacts.len <= MAX_POINTS, "{contacts:?}");
-        debug_assert!(
-            contacts.iter().all(|contact| contact.distance.is_finite()),
-            "{contacts:?}"
-        );
-        self.set_normals(normals);
-        self.replace_points(normals, contacts);
-    }
-
-    fn replace_points(&mut self, normals: [Vec3; 2], contacts: &Contacts) {
-        let new_points = ManifoldPoints::new(contacts, normals, self.border_radii, self.order);
-        let count = contacts.len;
-        let tracked = &mut self.manifold.points;
-        let old = FeatureKeys::of(tracked);
-        let new = FeatureKeys::new(new_points.features, count);
-        if old == new && tracked.len() == count {
-            for (i, tracked) in tracked.iter_mut().enumerate() {
-                *tracked = new_points.tracked(i, tracked.data);
-            }
-            return;
+/// Replaces the contacts. The new ones inherit the data of the old ones.
+pub(super) fn replace<C: Default + Copy>(
+    tracked: &mut Vec<TrackedContact<C>>,
+    new_points: &ManifoldPoints,
+) {
+    let count = new_points.count;
+    let old = FeatureKeys::of(tracked);
+    let new = FeatureKeys::new(new_points.features, count);
+    if old == new && tracked.len() == count {
+        for (i, tracked) in tracked.iter_mut().enumerate() {
+            *tracked = new_points.tracked(i, tracked.data);
         }
-        let matches = match_old_points(tracked, &old, &new_points, &new, count);
-        let data = |i: usize| tracked.get(i).map_or_else(C::default, |old| old.data);
-        let inheritance = [data(0), data(1), data(2), data(3), C::default()];
-        tracked.clear();
-        tracked.extend((0..count).map(|i| new_points.tracked(i, inheritance[matches[i]])));
+        return;
     }
+    let matches = match_old_points(tracked, &old, new_points, &new);
+    let data = |i: usize| tracked.get(i).map_or_else(C::default, |old| old.data);
+    let inheritance = [data(0), data(1), data(2), data(3), C::default()];
+    tracked.clear();
+    tracked.extend((0..count).map(|i| new_points.tracked(i, inheritance[matches[i]])));
+}
+
+/// Replaces the contacts with up to four new ones, which inherit the data of old ones with the same ids.
+pub(super) fn replace_by_ids<C: Default + Copy>(
+    tracked: &mut Vec<TrackedContact<C>>,
+    new_points: &[Option<TrackedContact<()>>],
+) {
+    debug_assert!(new_points.len() <= MAX_POINTS, "{}", new_points.len());
+    let data = array::from_fn::<C, MAX_POINTS, _>(|i| {
+        let new = new_points.get(i).copied().flatten();
+        let new = new.map(|new| [new.fid1, new.fid2]);
+        let old = tracked.iter().find(|old| new == Some([old.fid1, old.fid2]));
+        old.map_or_else(C::default, |old| old.data)
+    });
+    let with_data = |(new, data): (&Option<TrackedContact<()>>, C)| {
+        let new = new.as_ref()?;
+        Some(TrackedContact {
+            local_p1: new.local_p1,
+            local_p2: new.local_p2,
+            dist: new.dist,
+            fid1: new.fid1,
+            fid2: new.fid2,
+            data,
+        })
+    };
+    // Reuses the memory of the points, so that a pair at rest allocates nothing.
+    tracked.clear();
+    tracked.extend(new_points.iter().zip(data).filter_map(with_data));
 }
 
 /// Positions and features of contacts in the manifold's order of the shapes, coordinate by coordinate. Unused
 /// entries mean nothing.
-struct ManifoldPoints {
+pub(super) struct ManifoldPoints {
+    pub count: usize,
     points: [[[f32; MAX_POINTS]; 3]; 2],
     distances: [f32; MAX_POINTS],
     features: [[u32; MAX_POINTS]; 2],
@@ -55,7 +74,7 @@ struct ManifoldPoints {
 
 impl ManifoldPoints {
     #[inline(always)]
-    fn new(
+    pub fn new(
         contacts: &Contacts,
         normals: [Vec3; 2],
         border_radii: [f64; 2],
@@ -72,12 +91,13 @@ impl ManifoldPoints {
         };
         let [a, b, c, d] = &contacts.features;
         let packed = |side: usize| {
-            let pack = |features: &[Feature; 2]| kernel_manifold::pack(features[side]).0;
-            [pack(a), pack(b), pack(c), pack(d)]
+            let packed_id = |features: &[Feature; 2]| pack(features[side]).0;
+            [packed_id(a), packed_id(b), packed_id(c), packed_id(d)]
         };
         // References, since which one comes first is selected.
         let sides = order.to_caller([(&contacts.on_1, 0), (&contacts.on_2, 1)]);
         Self {
+            count: contacts.len,
             points: map_pair(sides, at_border),
             distances: (contacts.distance - (border_radii[0] + border_radii[1]) as Real).to_array(),
             features: map_pair(sides, |(_, side)| packed(side)),
@@ -163,13 +183,12 @@ fn match_old_points<C>(
     old_ids: &FeatureKeys,
     new_points: &ManifoldPoints,
     new_ids: &FeatureKeys,
-    count: usize,
 ) -> [usize; MAX_POINTS] {
     let old = &old[..old.len().min(MAX_POINTS)];
     let mut matches = [NONE; MAX_POINTS];
     // A bit for each old point that is not matched yet.
     let mut left = (1_u32 << old.len()) - 1;
-    for (i, matched) in matches[..count].iter_mut().enumerate() {
+    for (i, matched) in matches[..new_points.count].iter_mut().enumerate() {
         let candidates = old_ids.same(new_ids, i) & left;
         *matched = (candidates.trailing_zeros() as usize).min(NONE);
         // Clears the lowest bit.
@@ -178,7 +197,7 @@ fn match_old_points<C>(
     if left == 0 {
         return matches;
     }
-    let unmatched = matches[..count].iter_mut().enumerate();
+    let unmatched = matches[..new_points.count].iter_mut().enumerate();
     for (i, matched) in unmatched.filter(|(_, matched)| **matched == NONE) {
         let place = new_points.point(0, i);
         let away = |j: &usize| old[*j].local_p1.distance_squared(place);

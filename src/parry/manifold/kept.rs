@@ -12,38 +12,20 @@
 //! otherwise the contacts are chosen anew.
 
 use glam::Vec3;
-use parry3d::query::TrackedContact;
 
 use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
 use crate::pose::RelativePose;
 use crate::query::{LastContacts, Proximity, first_least};
-use crate::simd::{DVec3x4, LANES, coordinates, widened};
+use crate::simd::LANES;
 use crate::tolerance::{KEPT_ANGLE_COS, KEPT_DEPTH, KEPT_DRIFT};
 use crate::tuning::{ROCKING_COS, ROCKING_RISE};
 
-impl<M, C> KernelManifold<'_, M, C> {
-    /// Reads the contacts at the present pose, if there are any. Lanes beyond the last contact repeat it.
-    // perf: inlining it costs pairs that are apart 3 % more instructions. Returning the contacts would copy them: 1 %
-    // more in touching/8.
-    #[inline(never)]
+impl KernelManifold<'_, '_> {
+    /// Reads the contacts at the present pose, if there are any.
+    #[inline]
     pub fn read_contacts(&self, pose: &RelativePose, last: &mut Option<LastContacts>) {
-        let contacts = &self.manifold.points[..];
-        let lanes = match contacts {
-            [a] => [a, a, a, a],
-            [a, b] => [a, b, b, b],
-            [a, b, c] => [a, b, c, c],
-            [a, b, c, d] => [a, b, c, d],
-            _ => return,
-        };
-        let points =
-            |of: fn(&TrackedContact<C>) -> &Vec3| DVec3x4(coordinates(lanes.map(of)).map(widened));
-        let (on_1, on_2) = if self.order.is_reversed() {
-            (points(|c| &c.local_p2), points(|c| &c.local_p1))
-        } else {
-            (points(|c| &c.local_p1), points(|c| &c.local_p2))
-        };
-        *last = Some(LastContacts::new(on_1, on_2, pose));
+        self.manifold.points().read(self.order, pose, last);
     }
 
     /// Measures the contacts anew where they are. Returns `false`, and changes nothing, if they have to be
@@ -73,7 +55,7 @@ impl<M, C> KernelManifold<'_, M, C> {
         normals: &Normals,
         radius: f64,
     ) -> Option<usize> {
-        let old_normals = [self.manifold.local_n1, self.manifold.local_n2];
+        let old_normals = [*self.manifold.local_n1, *self.manifold.local_n2];
         let last = last?;
         let turned_less = |cos| normals.are_near(self.order.to_kernel(old_normals), cos);
         if !turned_less(ROCKING_COS) {
@@ -83,7 +65,7 @@ impl<M, C> KernelManifold<'_, M, C> {
         if !last.are_within(normal, KEPT_DRIFT * radius) {
             return None;
         }
-        let distances = last.distances(normal).to_array();
+        let mut distances = last.distances(normal).to_array();
         if !turned_less(KEPT_ANGLE_COS) && !self.rise_within(distances, ROCKING_RISE * radius) {
             return None;
         }
@@ -93,18 +75,18 @@ impl<M, C> KernelManifold<'_, M, C> {
         if excess.abs() > KEPT_DEPTH * radius {
             return None;
         }
-        for (point, distance) in self.manifold.points.iter_mut().zip(distances) {
-            point.dist = distance as f32;
-        }
-        self.manifold.points[deepest].dist = signed_distance as f32;
+        distances[deepest] = signed_distance;
+        self.manifold.points_mut().set_distances(&distances);
         self.set_normals(normals.rounded);
         Some(deepest)
     }
 
     /// Whether no contact's distance differs by more than this from that of the previous update.
     fn rise_within(&self, distances: [f64; LANES], most: f64) -> bool {
-        let mut points = self.manifold.points.iter().zip(distances);
-        points.all(|(old, now)| (now - f64::from(old.dist)).abs() <= most)
+        let points = self.manifold.points();
+        let old = (0..).map_while(|i| points.distance(i));
+        old.zip(distances)
+            .all(|(old, now)| (now - f64::from(old)).abs() <= most)
     }
 }
 

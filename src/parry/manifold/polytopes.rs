@@ -7,12 +7,11 @@ use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
 use super::sink::UpdateContacts;
 use crate::hull::Hull;
-use crate::manifold::{ClipScratch, Contacts};
+use crate::manifold::{self, ClipScratch, Contacts};
 use crate::parry::constraints::{ConstrainedPair, Constraints, Corrected};
-use crate::parry::instances::HullPartner;
 use crate::pose::RelativePose;
 use crate::query::{self, FlushFaces, LastContacts, Proximity};
-use crate::support::Cso;
+use crate::support::{Cso, Polytope};
 use crate::tolerance::UNCORRECTED;
 use crate::tuning::ABSURD_DEPTH;
 
@@ -25,15 +24,15 @@ pub(super) struct PolytopeContacts<'a, 'c, B> {
     pub scratch: &'a mut ClipScratch,
 }
 
-impl<B: HullPartner> UpdateContacts for PolytopeContacts<'_, '_, B> {
+impl<B: Polytope> UpdateContacts for PolytopeContacts<'_, '_, B> {
     #[inline(always)]
     fn pose(&self) -> Option<&RelativePose> {
         Some(self.cso.pose)
     }
 
-    fn flush_faces<M, C>(
+    fn flush_faces(
         &self,
-        manifold: &KernelManifold<'_, M, C>,
+        manifold: &KernelManifold<'_, '_>,
         last: &LastContacts,
     ) -> Option<FlushFaces> {
         manifold.flush_faces(self.cso, last)
@@ -41,9 +40,9 @@ impl<B: HullPartner> UpdateContacts for PolytopeContacts<'_, '_, B> {
 
     /// Leaves the contacts where they are, if that is right, or chooses them anew.
     #[inline(always)]
-    fn update_contacts<M, C: Default + Copy>(
+    fn update_contacts(
         &mut self,
-        manifold: &mut KernelManifold<'_, M, C>,
+        manifold: &mut KernelManifold<'_, '_>,
         last: Option<&LastContacts>,
         near: &Proximity,
     ) -> bool {
@@ -59,18 +58,18 @@ impl<B: HullPartner> UpdateContacts for PolytopeContacts<'_, '_, B> {
         }
         let is_kept = manifold.keep_contacts(last, near, &normals, self.cso.min_radius());
         if !is_kept {
-            let contacts = B::contacts(self.cso, near, self.max_distance, self.scratch);
+            let contacts = manifold::contacts(self.cso, near, self.max_distance, self.scratch);
             manifold.set_contacts(normals.rounded, &contacts);
         }
         is_kept
     }
 }
 
-impl<B: HullPartner> PolytopeContacts<'_, '_, B> {
+impl<B: Polytope> PolytopeContacts<'_, '_, B> {
     /// Like [`update`](Self::update), along normals that the constraints correct.
-    fn update_constrained<M, C: Default + Copy>(
+    fn update_constrained(
         mut self,
-        manifold: &mut KernelManifold<'_, M, C>,
+        manifold: &mut KernelManifold<'_, '_>,
         last: Option<&LastContacts>,
         near: &Proximity,
         normals: &Normals,
@@ -83,7 +82,7 @@ impl<B: HullPartner> PolytopeContacts<'_, '_, B> {
             pos12: self.pos12,
             max_distance: self.max_distance,
         };
-        let corrected = B::correct(&pair, pair.order.to_caller(normals.rounded));
+        let corrected = pair.correct(pair.order.to_caller(normals.rounded));
         let is_as_it_was = corrected.as_ref().is_some_and(|corrected| {
             let [normal, _] = pair.order.to_kernel(corrected.normals);
             normal.abs_diff_eq(normals.rounded[0], UNCORRECTED)
@@ -106,7 +105,7 @@ impl<B: HullPartner> PolytopeContacts<'_, '_, B> {
     }
 
     fn along_normal(&mut self, near: &Proximity, normals: &Normals) -> ([Vec3; 2], Contacts) {
-        let contacts = B::contacts(self.cso, near, self.max_distance, self.scratch);
+        let contacts = manifold::contacts(self.cso, near, self.max_distance, self.scratch);
         (normals.rounded, contacts)
     }
 
@@ -133,7 +132,7 @@ impl<B: HullPartner> PolytopeContacts<'_, '_, B> {
         // The query's depth says little about contacts along a corrected normal.
         let absurd = || ABSURD_DEPTH * near.signed_distance.min(0.0);
         let range = [corrected.least.unwrap_or_else(absurd), self.max_distance];
-        let contacts = B::contacts_along(self.cso, near, normal, range, self.scratch)?;
+        let contacts = manifold::contacts_along(self.cso, near, normal, range, self.scratch)?;
         Some((normals, contacts))
     }
 
@@ -146,9 +145,9 @@ impl<B: HullPartner> PolytopeContacts<'_, '_, B> {
     ) -> Option<([Vec3; 2], Contacts)> {
         let mut beyond = f64::INFINITY;
         while chosen.1.len > 0
-            && let Some(side) = B::covered_side(pair, &chosen.1, chosen.0)
+            && let Some(side) = pair.covered_side(&chosen.1, chosen.0)
         {
-            let out = B::way_out(pair, side, beyond)?;
+            let out = pair.way_out(side, beyond)?;
             beyond = out.least?;
             chosen = self.along(pair, near, &out)?;
         }

@@ -1,7 +1,6 @@
 //! Writes the answer of a query into a manifold.
 
-use parry3d::query::ContactManifold;
-
+use super::erased::ErasedManifold;
 use super::kernel_manifold::{AxisFrame, KernelManifold};
 use super::still::{SettledContacts, Still};
 use crate::gjk::SeparatingAxis;
@@ -20,9 +19,9 @@ pub(super) trait UpdateContacts {
     }
 
     /// The faces that the `last` contacts lie on, if these hardly moved.
-    fn flush_faces<M, C>(
+    fn flush_faces(
         &self,
-        manifold: &KernelManifold<'_, M, C>,
+        manifold: &KernelManifold<'_, '_>,
         last: &LastContacts,
     ) -> Option<FlushFaces> {
         let _ = (manifold, last);
@@ -30,9 +29,9 @@ pub(super) trait UpdateContacts {
     }
 
     /// Writes the contacts, or leaves the `last` ones where they are. Returns whether it left them.
-    fn update_contacts<M, C: Default + Copy>(
+    fn update_contacts(
         &mut self,
-        manifold: &mut KernelManifold<'_, M, C>,
+        manifold: &mut KernelManifold<'_, '_>,
         last: Option<&LastContacts>,
         near: &Proximity,
     ) -> bool;
@@ -40,8 +39,8 @@ pub(super) trait UpdateContacts {
 
 /// Brings a manifold up to date. It holds only references: most pairs are apart, and copies that only contacts
 /// need would cost them more than the rest.
-pub(super) struct ManifoldSink<'a, 'p, M, C, B, U> {
-    manifold: &'a mut ContactManifold<M, C>,
+pub(super) struct ManifoldSink<'a, 'm, 'p, B, U> {
+    manifold: &'a mut ErasedManifold<'m>,
     pair: &'a Pair<'p, B>,
     frame: AxisFrame<'a>,
     contacts: U,
@@ -56,11 +55,11 @@ pub(super) struct ManifoldSink<'a, 'p, M, C, B, U> {
     still_apart: Option<f64>,
 }
 
-impl<'a, 'p, M, C, B, U> ManifoldSink<'a, 'p, M, C, B, U> {
+impl<'a, 'm, 'p, B, U> ManifoldSink<'a, 'm, 'p, B, U> {
     /// A sink for a manifold. `settled` are its contacts, if they may stay as they are.
     #[inline(always)]
     pub fn new(
-        manifold: &'a mut ContactManifold<M, C>,
+        manifold: &'a mut ErasedManifold<'m>,
         pair: &'a Pair<'p, B>,
         frame: AxisFrame<'a>,
         contacts: U,
@@ -80,7 +79,7 @@ impl<'a, 'p, M, C, B, U> ManifoldSink<'a, 'p, M, C, B, U> {
     }
 
     #[inline(always)]
-    fn kernel_manifold(&mut self) -> KernelManifold<'_, M, C> {
+    fn kernel_manifold(&mut self) -> KernelManifold<'_, 'm> {
         KernelManifold::new(self.manifold, self.pair, self.frame)
     }
 
@@ -117,15 +116,11 @@ impl<'a, 'p, M, C, B, U> ManifoldSink<'a, 'p, M, C, B, U> {
 }
 
 // perf: in calls the answers would go through memory, which pairs that are apart notice.
-impl<M, C, B, U> Sink for ManifoldSink<'_, '_, M, C, B, U>
-where
-    C: Default + Copy,
-    U: UpdateContacts,
-{
+impl<B, U: UpdateContacts> Sink for ManifoldSink<'_, '_, '_, B, U> {
     #[inline(always)]
     fn memory(&mut self) -> PairMemory {
         let manifold = KernelManifold::new(self.manifold, self.pair, self.frame);
-        if !manifold.manifold.points.is_empty()
+        if !manifold.manifold.is_empty()
             && self.last.is_none()
             && let Some(pose) = self.contacts.pose()
         {
@@ -142,7 +137,7 @@ where
 
     #[inline(always)]
     fn spheres_apart(&mut self) {
-        if !self.manifold.points.is_empty() {
+        if !self.manifold.is_empty() {
             self.kernel_manifold().forget();
         }
     }
@@ -151,7 +146,7 @@ where
     /// found here or in the cache of proofs.
     #[inline]
     fn still_separated(&mut self, apart: &SeparatingAxis) {
-        if self.manifold.points.is_empty() {
+        if self.manifold.is_empty() {
             self.still_apart = Some(apart.separation);
         } else {
             self.separated(apart);
@@ -170,7 +165,7 @@ where
         if let Some(still) = self.still
             && still.shows(near.signed_distance - (border_1 + border_2))
         {
-            manifold.hold(still);
+            manifold.manifold.hold(still);
             self.is_kept = true;
             self.held_at = Some(near.signed_distance);
             return;

@@ -5,8 +5,7 @@
 //! contact is then reported as it is measured along the normal. A query certifies the distance, or a certificate of an
 //! earlier pose does: what the manifold becomes is the same.
 
-use parry3d::query::ContactManifold;
-
+use super::erased::ErasedManifold;
 use super::kernel_manifold::KernelManifold;
 use crate::parry::order::PairOrder;
 use crate::parry::still_cache::{StillCache, StillPair};
@@ -34,8 +33,8 @@ impl SettledContacts {
     /// Reads the contacts, unless they have left their places.
     // perf: inlined, it costs pairs that move 2 % more instructions.
     #[inline(never)]
-    pub fn read<M, C>(
-        manifold: &KernelManifold<'_, M, C>,
+    pub fn read(
+        manifold: &KernelManifold<'_, '_>,
         pose: &RelativePose,
         pair: StillPair,
         settled: &mut Option<Self>,
@@ -86,22 +85,20 @@ impl Still {
 
 /// Whether a manifold has contacts whose normals the shapes hardly turned against since they were stored.
 #[inline]
-pub(super) fn is_settled<M, C>(
-    manifold: &ContactManifold<M, C>,
+pub(super) fn is_settled(
+    manifold: &ErasedManifold<'_>,
     order: PairOrder,
     pose: &RelativePose,
 ) -> bool {
-    let [n1, n2] = order.to_kernel([manifold.local_n1, manifold.local_n2]);
+    let [n1, n2] = order.to_kernel([*manifold.local_n1, *manifold.local_n2]);
     let turned = n1.as_dvec3() + pose.direction_to_1(n2.as_dvec3());
-    !manifold.points.is_empty() && turned.length_squared() <= STILL_TILT * STILL_TILT
+    !manifold.is_empty() && turned.length_squared() <= STILL_TILT * STILL_TILT
 }
 
-impl<M, C> KernelManifold<'_, M, C> {
+impl ErasedManifold<'_> {
     /// Writes the distances, and leaves everything else.
     #[inline]
-    pub fn hold(&mut self, still: &Still) {
-        for (point, distance) in self.manifold.points.iter_mut().zip(still.distances) {
-            point.dist = distance as f32;
-        }
+    pub(super) fn hold(&mut self, still: &Still) {
+        self.points_mut().set_distances(&still.distances);
     }
 }

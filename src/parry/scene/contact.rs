@@ -7,7 +7,6 @@ use parry3d::shape::Shape;
 use crate::curved::{CurvedAnswer, CurvedQuery, Hint, SurfacePieces};
 use crate::epa;
 use crate::parry::convert::{Core, HalfSpace};
-use crate::parry::instances::{FullWithHull, HullPartner};
 use crate::parry::pair::{Pair, PairVisitor, valid_pose};
 use crate::parry::scene::caller::{KernelFrame, NearestPoints};
 use crate::parry::scene::capsules;
@@ -16,9 +15,9 @@ use crate::parry::scene::separation::{CoreSeparation, SeparationQuery, over_half
 use crate::parry::visit;
 use crate::parry::workspace::Workspace;
 use crate::pose::ValidPose;
-use crate::query::{Query, moved_apart};
+use crate::query::{Full, Query, moved_apart};
 use crate::stats::Cost;
-use crate::support::Support;
+use crate::support::{Polytope, Support};
 use crate::tolerance::{GJK_CURVED_GAP, GJK_GAP_OF_SIZE};
 
 /// The deepest contact of shapes that overlap or are at most `prediction` apart.
@@ -135,7 +134,7 @@ impl ContactQuery<'_> {
 impl PairVisitor for ContactQuery<'_> {
     type Answer = Option<Contact>;
 
-    fn visit<B: HullPartner>(
+    fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,
@@ -145,7 +144,7 @@ impl PairVisitor for ContactQuery<'_> {
         let max_distance = pair.core_distance(self.prediction, cso.size());
         let mut sink = NearestPoints::new(pair, &pose);
         Query::new(&cso, max_distance, &mut workspace.epa, &mut Cost::default())
-            .run_into(FullWithHull, &mut sink)
+            .run_into(Full, &mut sink)
             .ok_or(Unsupported)?;
         Ok(sink.nearest.map(|near| near.contact()))
     }

@@ -1,0 +1,204 @@
+//! The update of a manifold.
+
+use glam::Quat;
+use parry3d::math::{Pose, Real};
+use parry3d::query::Unsupported;
+
+use super::erased::ErasedManifold;
+use super::half_space::HalfSpaceContacts;
+use super::kernel_manifold::{AxisFrame, KernelManifold};
+use super::polytopes::PolytopeContacts;
+use super::sink::ManifoldSink;
+use super::still::{self, SettledContacts};
+use crate::curved::SurfacePieces;
+use crate::hull::Hull;
+use crate::parry::apart_cache::ApartPair;
+use crate::parry::constraints::Constraints;
+use crate::parry::convert::HalfSpace;
+use crate::parry::half_space as plane;
+use crate::parry::pair::{Pair, PairVisitor, valid_pose};
+use crate::parry::still_cache::StillPair;
+use crate::parry::workspace::Workspace;
+use crate::pose::RelativePose;
+use crate::query::{Full, Query};
+use crate::stats::{Cost, SharedStats, Stage};
+use crate::support::{Cso, Polytope, Support};
+
+/// Brings a manifold up to date.
+pub(crate) struct UpdateManifold<'a> {
+    pub pos12: &'a Pose,
+    pub prediction: Real,
+    pub constraints: &'a [Constraints<'a>; 2],
+    pub manifold: ErasedManifold<'a>,
+    pub stats: &'a SharedStats,
+}
+
+impl PairVisitor for UpdateManifold<'_> {
+    /// Fails if the pair is not finite.
+    type Answer = ();
+
+    // perf: in a call the pair would go through memory, which small queries notice.
+    #[inline(always)]
+    fn visit<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        workspace: &mut Workspace,
+    ) -> Result<(), Unsupported> {
+        let max_distance = pair.core_distance(self.prediction, pair.size());
+        if let Some(apart) = self.apart_pair(pair)
+            && workspace.apart_cache.proves(&apart, max_distance)
+        {
+            self.stats.record_free(apart.stage());
+            return Ok(());
+        }
+        let pose = pair.pose(valid_pose(self.pos12)?);
+        let cso = pair.cso(&pose);
+        let mut settled = None;
+        self.read_settled(pair, &pose, &mut settled, |rotation, key| {
+            StillPair::of(&cso, rotation, key)
+        });
+        if self.hold_if_proved(pair.border_radii, settled.as_ref(), max_distance, workspace) {
+            return Ok(());
+        }
+        let mut cost = Cost::default();
+        let stage = self.query(
+            pair,
+            &cso,
+            max_distance,
+            settled.as_ref(),
+            workspace,
+            &mut cost,
+        )?;
+        self.stats.record(stage, &cost);
+        Ok(())
+    }
+
+    fn visit_half_space(
+        &mut self,
+        pair: &Pair<'_, HalfSpace>,
+        workspace: &mut Workspace,
+    ) -> Result<(), Unsupported> {
+        let pose = pair.pose(valid_pose(self.pos12)?);
+        let max_distance = pair.core_distance(self.prediction, pair.hull.radius());
+        let mut settled = None;
+        self.read_settled(pair, &pose, &mut settled, |rotation, key| {
+            plane::still_pair(pair, &pose, rotation, key)
+        });
+        if self.hold_if_proved(pair.border_radii, settled.as_ref(), max_distance, workspace) {
+            return Ok(());
+        }
+        let contacts = HalfSpaceContacts {
+            hull: pair.hull,
+            pose: &pose,
+            max_distance,
+            scratch: &mut workspace.clip,
+        };
+        let frame = AxisFrame::First;
+        let mut sink =
+            ManifoldSink::new(&mut self.manifold, pair, frame, contacts, settled.as_ref());
+        let mut cost = Cost::default();
+        let stage = plane::run_into(pair, &pose, max_distance, &mut sink, &mut cost);
+        self.stats.record(sink.stage(stage), &cost);
+        sink.store_held(&mut workspace.still_cache);
+        Ok(())
+    }
+
+    fn visit_curved<B: SurfacePieces>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        workspace: &mut Workspace,
+    ) -> Result<(), Unsupported> {
+        self.update_curved(pair, workspace)
+    }
+}
+
+impl<'a> UpdateManifold<'a> {
+    /// Reads the contacts of the manifold, if they may stay as they are. They are written to `settled`: a return value
+    /// would be copied even where there are none.
+    #[inline]
+    fn read_settled<B>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        pose: &RelativePose,
+        settled: &mut Option<SettledContacts>,
+        still_pair: impl FnOnce(Quat, u64) -> Option<StillPair>,
+    ) {
+        // Corrected normals need not be those of the query.
+        if matches!(self.constraints, [Constraints::None, Constraints::None])
+            && still::is_settled(&self.manifold, pair.order, pose)
+            && let Some(still_pair) = still_pair(self.pos12.rotation, self.manifold.key())
+        {
+            let manifold = KernelManifold::new(&mut self.manifold, pair, AxisFrame::First);
+            SettledContacts::read(&manifold, pose, still_pair, settled);
+        }
+    }
+
+    /// Only measures the contacts of a pair at rest anew, if that is proved to be enough. Returns whether it is.
+    #[inline]
+    pub(super) fn hold_if_proved(
+        &mut self,
+        border_radii: [f64; 2],
+        settled: Option<&SettledContacts>,
+        max_distance: f64,
+        workspace: &Workspace,
+    ) -> bool {
+        let Some(SettledContacts { still, .. }) = settled else {
+            return false;
+        };
+        let is_proved = still.is_proved(&workspace.still_cache, max_distance, border_radii);
+        if is_proved {
+            self.manifold.hold(still);
+            self.stats.record_free(Stage::Still);
+        }
+        is_proved
+    }
+
+    /// Runs the query. If the shapes are still apart along the manifold's axis, stores the proof.
+    #[inline]
+    fn query<B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B>,
+        cso: &Cso<'_, Hull, B>,
+        max_distance: f64,
+        settled: Option<&SettledContacts>,
+        workspace: &mut Workspace,
+        cost: &mut Cost,
+    ) -> Result<Stage, Unsupported> {
+        let frame = AxisFrame::of(cso);
+        let mut query = Query {
+            cso,
+            max_distance,
+            polytope_cache: Some((&mut workspace.polytope_cache, self.manifold.key())),
+            scratch: &mut workspace.epa,
+            cost,
+        };
+        let contacts = PolytopeContacts {
+            cso,
+            max_distance,
+            constraints: self.constraints,
+            pos12: self.pos12,
+            scratch: &mut workspace.clip,
+        };
+        let mut sink = ManifoldSink::new(&mut self.manifold, pair, frame, contacts, settled);
+        let stage = query.run_into(Full, &mut sink).ok_or(Unsupported)?;
+        let (apart_by, stage) = (sink.still_apart(stage, cso), sink.stage(stage));
+        sink.store_held(&mut workspace.still_cache);
+        if let (Some(separation), Some(apart)) = (apart_by, self.apart_pair(pair)) {
+            let proofs = &mut workspace.apart_cache;
+            proofs.store(&apart, separation, [cso.size(), frame.lever(cso)]);
+        }
+        Ok(stage)
+    }
+
+    /// The key of a proof that two hulls are apart, if the manifold has an axis that separates them.
+    #[inline]
+    fn apart_pair<B: Support>(&self, pair: &Pair<'_, B>) -> Option<ApartPair<'a>> {
+        let is_empty = self.manifold.is_empty();
+        is_empty.then_some(ApartPair {
+            key: self.manifold.key(),
+            shapes: [pair.hull.id()?, pair.other.id()?],
+            axis: *self.manifold.local_n1,
+            pose: self.pos12,
+        })
+    }
+}
