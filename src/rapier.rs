@@ -1,10 +1,9 @@
 //! Narrow phases of rapier with our dispatcher, compiled with this crate.
 //!
 //! Rapier's `NarrowPhase::with_query_dispatcher` is generic over the dispatcher. So the program that calls it compiles
-//! the update of contacts, optimised as the program itself is. That takes twenty seconds of its build. And where only
-//! its dependencies are optimised (`[profile.dev.package."*"] opt-level = 3`, without an `opt-level` for the program),
-//! steps take longer than with rapier's default. The functions here do the same, and are compiled once, as a
-//! dependency.
+//! what leads to the update of contacts, optimised as the program itself is. That takes some seconds of its build. And
+//! where only its dependencies are optimised (`[profile.dev.package."*"] opt-level = 3`, without an `opt-level` for the
+//! program), steps take a seventh longer. The functions here do the same, and are compiled once, as a dependency.
 
 use rapier3d::geometry::NarrowPhase;
 

@@ -14,7 +14,7 @@ use super::silent::Silent;
 pub type Manifold = ContactManifold<(), u32>;
 
 /// The functions of [`PersistentQueryDispatcher`], compiled with this crate. Those are generic over the solver's
-/// data: each program that calls them compiles the whole update of a manifold, which takes a third of a minute.
+/// data: each program that calls them compiles what leads to an update, and parry's routines, which takes ten seconds.
 pub trait UpdateManifolds {
     fn update_manifolds(
         &self,
