@@ -65,7 +65,7 @@ fn meet(dispatcher: &IsaGjkDispatcher, is_meant: impl Fn(&ShapeSample) -> bool) 
     for a in &samples {
         for b in &samples {
             let mut memory = Memory::default();
-            for pose in poses().iter().step_by(5) {
+            for pose in poses().iter().step_by(9) {
                 memory.update(dispatcher, pose, [&a.shape, &b.shape], 0.05);
             }
         }
@@ -78,7 +78,7 @@ fn a_recording_that_is_replayed_is_recorded_to_the_bit() {
     meet(&dispatcher, |_| true);
     let summary = recorder.summary();
     assert_eq!(summary.unknown_shapes, 0);
-    assert!(summary.recorded > 10_000 && summary.recorded == summary.seen);
+    assert!(summary.recorded > 5_000 && summary.recorded == summary.seen);
     assert_eq!(summary.bytes, page.text().len());
 
     let (dispatcher, _, again) = recording(all);
@@ -96,7 +96,7 @@ fn pairs_of_ours_do_not_look_wrong() {
     let (dispatcher, recorder, page) = recording(|recorder| recorder);
     let is_curved = |name: &str| name.contains("cylinder") || name.contains("cone");
     meet(&dispatcher, |sample| !is_curved(sample.name));
-    assert!(recorder.summary().seen > 10_000);
+    assert!(recorder.summary().seen > 5_000);
     assert_eq!(recorder.summary().recorded, 0, "{}", page.text());
 }
 

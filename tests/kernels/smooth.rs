@@ -341,7 +341,7 @@ fn check_depths<A: Support, B: Support>(name: &str, a: &A, b: &B, seed: u128) {
     let mut worst = Worst::default();
     let mut checked = 0;
     let reach = a.radius() + b.radius();
-    for i in 0..30 {
+    for i in 0..18 {
         // Some poses are as symmetric as poses can be.
         let turn = [DQuat::IDENTITY, DQuat::from_rotation_x(FRAC_PI_2)]
             .get(i % 6)
@@ -375,7 +375,7 @@ fn check_depths<A: Support, B: Support>(name: &str, a: &A, b: &B, seed: u128) {
         assert!((overlap - found.depth).abs() <= 2.0e-6 * size, "{found:?}");
     }
     println!("{name:<18} {checked} overlaps, worst {worst:?}");
-    assert!(checked >= 8, "{name}: only {checked} overlaps");
+    assert!(checked >= 6, "{name}: only {checked} overlaps");
     assert!(worst.error <= 1.0e-5, "{name}: {worst:?}");
     // Most where a circle of directions is least, as the documentation says.
     assert!(worst.iterations <= 7500, "{name}: {worst:?}");

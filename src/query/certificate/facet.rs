@@ -164,8 +164,7 @@ impl FacetTest {
     }
 
     /// Two edges that cross; everything in frame 1.
-    // perf: in a call the edges would go through memory: 1 % more instructions in touching/8.
-    #[inline(always)]
+    #[inline]
     fn edges<A: Polytope, B: Polytope>(
         &self,
         cso: &Cso<'_, A, B>,
