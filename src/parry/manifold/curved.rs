@@ -6,7 +6,7 @@ use parry3d::query::Unsupported;
 
 use super::kernel_manifold::{AxisFrame, KernelManifold};
 use super::normals::Normals;
-use super::still::{SettledContacts, Still, is_settled};
+use super::still::Still;
 use super::update::UpdateManifold;
 use crate::curved::{self, CurvedAnswer, CurvedQuery, Hint, Patch, SurfacePieces};
 use crate::manifold::Contacts;
@@ -33,7 +33,10 @@ impl UpdateManifold<'_> {
         let borders = pair.border_radii[0] + pair.border_radii[1];
         let touching = MIN_DIRECTED_DISTANCE * (cso.size() + borders);
         let max_distance = f64::from(self.prediction) + touching;
-        let settled = self.settled_contacts(&cso, pair.order);
+        let mut settled = None;
+        self.read_settled(pair, &pose, &mut settled, |rotation, key| {
+            StillPair::of(&cso, rotation, key)
+        });
         let reach = max_distance + borders;
         if self.hold_if_proved(pair.border_radii, settled.as_ref(), reach, workspace) {
             return Ok(());
@@ -82,23 +85,6 @@ impl UpdateManifold<'_> {
         }
         self.stats.record(stage, &cost);
         Ok(())
-    }
-
-    /// The contacts of the manifold, if they may stay as they are.
-    fn settled_contacts<A: SurfacePieces, B: SurfacePieces>(
-        &mut self,
-        cso: &Cso<'_, A, B>,
-        order: PairOrder,
-    ) -> Option<SettledContacts> {
-        let are_free = matches!(self.constraints, [Constraints::None, Constraints::None]);
-        if !are_free || !is_settled(&self.manifold, order, cso.pose) {
-            return None;
-        }
-        let pair = StillPair::of(cso, self.pos12.rotation, self.manifold.key())?;
-        let manifold = KernelManifold::with_borders(&mut self.manifold, order, AxisFrame::First);
-        let mut settled = None;
-        SettledContacts::read(&manifold, cso.pose, pair, &mut settled);
-        settled
     }
 
     /// Returns whether the contacts stayed where they were.

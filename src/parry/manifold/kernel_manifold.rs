@@ -86,9 +86,9 @@ pub(super) struct KernelManifold<'a, 'm> {
 
 impl<'a, 'm> KernelManifold<'a, 'm> {
     #[inline(always)]
-    pub fn new<B>(
+    pub fn new<B, A>(
         manifold: &'a mut ErasedManifold<'m>,
-        pair: &Pair<'_, B>,
+        pair: &Pair<'_, B, A>,
         frame: AxisFrame<'a>,
     ) -> Self {
         Self {

@@ -116,9 +116,9 @@ impl<'a> UpdateManifold<'a> {
     /// Reads the contacts of the manifold, if they may stay as they are. They are written to `settled`: a return value
     /// would be copied even where there are none.
     #[inline]
-    fn read_settled<B>(
+    pub(super) fn read_settled<B, A>(
         &mut self,
-        pair: &Pair<'_, B>,
+        pair: &Pair<'_, B, A>,
         pose: &RelativePose,
         settled: &mut Option<SettledContacts>,
         still_pair: impl FnOnce(Quat, u64) -> Option<StillPair>,
