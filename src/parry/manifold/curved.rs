@@ -6,7 +6,7 @@ use parry3d::query::Unsupported;
 
 use super::kernel_manifold::{AxisFrame, KernelManifold};
 use super::normals::Normals;
-use super::still::Still;
+use super::still::{SettledContacts, Still};
 use super::update::UpdateManifold;
 use crate::curved::{self, CurvedAnswer, CurvedQuery, Hint, Patch, SurfacePieces};
 use crate::manifold::Contacts;
@@ -41,18 +41,31 @@ impl UpdateManifold<'_> {
         if self.hold_if_proved(pair.border_radii, settled.as_ref(), reach, workspace) {
             return Ok(());
         }
-        let frame = AxisFrame::of(&cso);
+        self.query_curved(pair, &cso, max_distance, settled.as_ref(), workspace)
+    }
+
+    /// Up to a maximum distance of the shapes with their borders.
+    fn query_curved<A: SurfacePieces, B: SurfacePieces>(
+        &mut self,
+        pair: &Pair<'_, B, A>,
+        cso: &Cso<'_, A, B>,
+        max_distance: f64,
+        settled: Option<&SettledContacts>,
+        workspace: &mut Workspace,
+    ) -> Result<(), Unsupported> {
+        let borders = pair.border_radii[0] + pair.border_radii[1];
+        let frame = AxisFrame::of(cso);
         let mut manifold = KernelManifold::with_borders(&mut self.manifold, pair.order, frame);
-        let mut last = settled.as_ref().map(|settled| settled.last);
+        let mut last = settled.map(|settled| settled.last);
         if last.is_none() {
-            manifold.read_contacts(&pose, &mut last);
+            manifold.read_contacts(cso.pose, &mut last);
         }
         let mut cost = Cost::default();
         let hint = manifold.hint(borders);
         let mut query = CurvedQuery {
-            cso: &cso,
+            cso,
             border_radii: pair.border_radii,
-            max_distance: reach,
+            max_distance: max_distance + borders,
             last: last.as_ref(),
             scratch: &mut workspace.curved,
             cost: &mut cost,
@@ -67,7 +80,7 @@ impl UpdateManifold<'_> {
                 on_1,
             } => {
                 let near = Near {
-                    cso: &cso,
+                    cso,
                     order: pair.order,
                     border_radii: pair.border_radii,
                     least: signed_distance - borders,
@@ -76,7 +89,7 @@ impl UpdateManifold<'_> {
                     max_distance,
                     last: last.as_ref(),
                 };
-                let still = settled.as_ref().map(|settled| &settled.still);
+                let still = settled.map(|settled| &settled.still);
                 let is_kept = self.update_contacts(&near, still, workspace);
                 if is_kept && stage == Stage::Feature {
                     stage = Stage::Kept;
