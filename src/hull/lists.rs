@@ -21,6 +21,14 @@ impl<T> Default for Rows<T> {
 }
 
 impl<T> Rows<T> {
+    /// With room for so many lists, and so many items in all of them.
+    pub fn with_capacity(lists: usize, items: usize) -> Self {
+        Self {
+            items: Vec::with_capacity(items),
+            ends: Vec::with_capacity(lists),
+        }
+    }
+
     pub fn push(&mut self, items: impl IntoIterator<Item = T>) {
         self.items.extend(items);
         self.ends.push(self.items.len());

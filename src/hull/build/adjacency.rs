@@ -40,6 +40,9 @@ struct MatrixEdge {
 /// The start of an edge across a face.
 const DIAGONAL: u16 = 0;
 
+/// No polygon, or no face.
+const NONE: u8 = u8::MAX;
+
 const NO_FACE: FaceCorner = FaceCorner { vertex: 0, slot: 0 };
 
 /// An edge on the way around the vertex that it leaves.
@@ -152,20 +155,24 @@ impl AdjacencyMatrix {
     /// Merges the triangle strips of polygons into these. Calls `add` for each face, with a triangle of it and
     /// the number of its polygon.
     pub fn merge(&mut self, polygons: &Rows<u32>, mut add: impl FnMut(usize, Option<usize>)) {
-        let polygon_of = self.mark_polygons(polygons);
-        let mut faces = vec![None; polygons.len()];
+        let mut polygon_of = [NONE; TRIANGLES];
+        self.mark_polygons(polygons, &mut polygon_of);
+        let mut faces = [NONE; TRIANGLES];
         self.corners.truncate(1);
         let mut count = 0;
         let triangles = mem::take(&mut self.triangles);
-        for (triangle, (&corners, polygon)) in triangles.iter().zip(polygon_of).enumerate() {
-            let known = polygon.and_then(|polygon| faces[polygon]);
-            self.face_of[triangle] = known.unwrap_or(count);
-            if known.is_some() {
+        for (triangle, (&corners, &polygon)) in triangles.iter().zip(&polygon_of).enumerate() {
+            let polygon = (polygon != NONE).then_some(index(polygon));
+            if let Some(polygon) = polygon
+                && faces[polygon] != NONE
+            {
+                self.face_of[triangle] = faces[polygon];
                 continue;
             }
+            self.face_of[triangle] = count;
             add(triangle, polygon);
             if let Some(polygon) = polygon {
-                faces[polygon] = Some(count);
+                faces[polygon] = count;
                 self.add_corners(polygons.row(polygon));
             } else {
                 self.add_corners(&corners);
@@ -175,23 +182,22 @@ impl AdjacencyMatrix {
         self.triangles = triangles;
     }
 
-    /// The polygon of each triangle. All edges of these become diagonals.
-    fn mark_polygons(&mut self, polygons: &Rows<u32>) -> [Option<usize>; TRIANGLES] {
-        let mut polygon_of = [None; TRIANGLES];
-        for (number, polygon) in polygons.rows().enumerate() {
+    /// Finds the polygon of each triangle. All edges of these become diagonals.
+    fn mark_polygons(&mut self, polygons: &Rows<u32>, polygon_of: &mut [u8; TRIANGLES]) {
+        // Each has a triangle of its own, so these are fewer than a u8 can count.
+        for (number, polygon) in (0..NONE).zip(polygons.rows()) {
             for (from, to) in sides(polygon) {
                 let edge = self.edges[row(from)][row(to)];
-                polygon_of[index(edge.triangle)] = Some(number);
+                polygon_of[index(edge.triangle)] = number;
             }
         }
-        for (triangle, polygon) in self.triangles.iter().zip(&polygon_of) {
-            if polygon.is_some() {
+        for (triangle, &polygon) in self.triangles.iter().zip(&*polygon_of) {
+            if polygon != NONE {
                 for (from, to) in sides(triangle) {
                     self.edges[row(from)][row(to)].start = DIAGONAL;
                 }
             }
         }
-        polygon_of
     }
 
     fn add_corners(&mut self, polygon: &[u32]) {

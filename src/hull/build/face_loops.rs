@@ -22,17 +22,18 @@ pub(super) struct FlatFaces {
 impl FlatFaces {
     /// `None` if the faces are not the flat sides of the polyhedron.
     pub fn of(polyhedron: &ConvexPolyhedron, points: &[DVec3], radius: f64) -> Option<Self> {
+        let (faces, corners) = (polyhedron.faces(), polyhedron.vertices_adj_to_face());
         let mut flat = Self {
             triangles: Vec::with_capacity((2 * points.len()).checked_sub(4)?),
-            polygons: Rows::default(),
+            polygons: Rows::with_capacity(faces.len(), corners.len()),
         };
         // The border of the first of the two sides along each edge.
         let mut borders: Vec<Option<SideBorder>> = vec![None; polyhedron.edges().len()];
         let mut open = 0_usize;
-        let mut polygon = Vec::new();
-        for face in polyhedron.faces() {
+        let mut polygon = Vec::with_capacity(points.len());
+        for face in faces {
             let range = places(face.first_vertex_or_edge, face.num_vertices_or_edges);
-            let corners = polyhedron.vertices_adj_to_face().get(range.clone())?;
+            let corners = corners.get(range.clone())?;
             let edges = polyhedron.edges_adj_to_face().get(range)?;
             let (lowest, _) = corners.iter().enumerate().min_by_key(|(_, v)| **v)?;
             polygon.clear();
