@@ -118,7 +118,7 @@ impl<'a> Operand<'a> {
     }
 
     /// The hull, if the shape is one and the cache finds it at once.
-    #[inline]
+    #[inline(always)]
     pub fn known<'h>(&self, cache: &'h HullCache, epoch: Epoch) -> Option<PreparedOperand<'h>>
     where
         'a: 'h,

@@ -78,6 +78,16 @@ fn prepare<'a>(
     Some([first.hull(hulls)?, second.hull(hulls)?])
 }
 
+/// The same for one operand.
+#[inline(never)]
+fn prepare_one<'a>(
+    operand: &Operand<'a>,
+    hulls: &'a mut HullCache,
+    epoch: Epoch,
+) -> Option<PreparedOperand<'a>> {
+    operand.prepare(hulls, epoch)?.hull(hulls)
+}
+
 /// Why a pair with a hull is left to the fallback.
 #[cold]
 pub(crate) fn why_left(pos12: &Pose, shapes: [&dyn Shape; 2]) -> Left {
@@ -149,8 +159,10 @@ impl HullOperand<'_> {
                  hulls, workspace, ..
              }| {
                 hulls.begin();
-                let prepared = self.operand.prepare(hulls, self.epoch).ok_or(Unsupported)?;
-                let prepared = prepared.hull(hulls).ok_or(Unsupported)?;
+                let prepared = match self.operand.known(hulls, self.epoch) {
+                    Some(known) => known,
+                    None => prepare_one(self.operand, hulls, self.epoch).ok_or(Unsupported)?,
+                };
                 let pair = Pair {
                     hull: prepared.hull,
                     other,

@@ -158,7 +158,7 @@ impl HullCache {
     }
 
     /// The hull of a polyhedron that is found at once. It may also be in the map.
-    #[inline]
+    #[inline(always)]
     pub fn known(&self, polyhedron: &ConvexPolyhedron, epoch: Epoch) -> Option<&Hull> {
         let place = self.recent_place(polyhedron)?;
         let slot = self.slots.get(place)?;
