@@ -51,7 +51,9 @@ pub fn half_space_contacts(
             .take(MAX_POINTS - 1)
             .for_each(|i| selection.push(Some(i)));
     }
-    let vertices = selection.corners.map(|i| i.map_or(witness, corner));
+    let vertex = |i: Option<usize>| i.map_or(witness, corner);
+    let [a, b, c, d] = selection.corners;
+    let vertices = [vertex(a), vertex(b), vertex(c), vertex(d)];
     Contacts {
         len: selection.len,
         ..contacts_at(shape, pose, proximity, vertices)
@@ -66,14 +68,16 @@ fn contacts_at(
     proximity: &Proximity,
     vertices: [VertexId; MAX_POINTS],
 ) -> Contacts {
+    let [a, b, c, d] = vertices;
     let on_1 = DVec3x4::gather(vertices, |vertex| shape.vertex(vertex));
     let distance = distances(proximity, on_1);
     let on_2 = pose.points_to_2(on_1 + DVec3x4::scaled(proximity.normal, distance));
+    let features = |vertex| [Feature::Vertex(vertex), proximity.features[1]];
     Contacts {
         on_1: on_1.to_f32x4(),
         on_2: on_2.to_f32x4(),
         distance: to_f32x4(distance),
-        features: vertices.map(|vertex| [Feature::Vertex(vertex), proximity.features[1]]),
+        features: [features(a), features(b), features(c), features(d)],
         len: MAX_POINTS,
     }
 }

@@ -1,41 +1,74 @@
 //! Hulls over half-spaces: one support against the plane is the whole query.
 
-use glam::Quat;
+use glam::{DVec3, Quat};
 
-use crate::gjk::SeparatingAxis;
+use crate::hull::Hull;
 use crate::parry::convert::HalfSpace;
 use crate::parry::pair::Pair;
 use crate::parry::still_cache::StillPair;
 use crate::pose::RelativePose;
-use crate::query::{Feature, PairMemory, Proximity, Sink};
-use crate::stats::{Cost, Stage};
+use crate::query::{Feature, Proximity};
+use crate::stats::Cost;
 use crate::support::{FaceId, ShapeId, ShapeKind, Support, VertexId};
 
-/// Hands the answer to `sink`, and returns the stage that found it.
-#[inline(always)]
-pub(crate) fn run_into(
+/// The boundary of a half-space, in the frame of a hull.
+pub(crate) struct Plane {
+    /// The unit normal into the half-space.
+    pub normal: DVec3,
+    /// A point of the plane.
+    origin: DVec3,
+}
+
+impl Plane {
+    #[inline(always)]
+    pub fn new(half_space: &HalfSpace, pose: &RelativePose) -> Self {
+        Self {
+            normal: -pose.direction_to_1(half_space.normal),
+            origin: pose.translation(),
+        }
+    }
+
+    #[inline(always)]
+    fn height(&self, p: DVec3) -> f64 {
+        self.normal.dot(self.origin - p)
+    }
+
+    /// Whether the bounding sphere of a hull is above it by more than `beyond`.
+    #[inline(always)]
+    pub fn is_sphere_apart(&self, hull: &Hull, beyond: f64) -> bool {
+        self.height(hull.center()) - hull.radius() > beyond
+    }
+
+    /// The vertex of a hull that is deepest in the half-space. The search begins at `start`.
+    #[inline(always)]
+    pub fn deepest(&self, hull: &Hull, start: VertexId, cost: &mut Cost) -> Proximity {
+        let normal = self.normal;
+        let (on_1, vertex) = hull.support(normal, start, cost);
+        let signed_distance = self.height(on_1);
+        Proximity {
+            signed_distance,
+            normal,
+            on_1,
+            on_2: on_1 + normal * signed_distance,
+            features: [Feature::Vertex(vertex), Feature::Face(FaceId::default())],
+        }
+    }
+}
+
+/// The vertex of a hull that is deepest in a half-space, or `None` if it is farther away than `max_distance`.
+#[inline]
+pub(crate) fn deepest(
     pair: &Pair<'_, HalfSpace>,
     pose: &RelativePose,
     max_distance: f64,
-    sink: &mut impl Sink,
-    cost: &mut Cost,
-) -> Stage {
-    // Every hull of a world is in a pair with its ground, and most of these pairs end here.
-    if is_sphere_apart(pair, pose, max_distance) {
-        sink.spheres_apart();
-        return Stage::BoundingSpheres;
+) -> Option<Proximity> {
+    let (hull, plane) = (pair.hull, Plane::new(pair.other, pose));
+    if plane.is_sphere_apart(hull, max_distance) {
+        return None;
     }
-    let near = deepest(pair, pose, &sink.memory(), cost);
-    if near.signed_distance <= max_distance {
-        sink.near(&near);
-        return Stage::Feature;
-    }
-    sink.separated(&SeparatingAxis {
-        axis: near.normal,
-        separation: near.signed_distance,
-        ids: [near.features[0].vertex(pair.hull), VertexId::default()],
-    });
-    Stage::Axis
+    let start = hull.start_vertex(plane.normal);
+    let near = plane.deepest(hull, start, &mut Cost::default());
+    (near.signed_distance <= max_distance).then_some(near)
 }
 
 /// The pair of a hull and a half-space, whose frame is that of the larger shape.
@@ -56,37 +89,4 @@ pub(crate) fn still_pair(
         place: pose.point_to_2(pair.hull.center()),
         radius: pair.hull.radius(),
     })
-}
-
-/// Whether the bounding sphere of a hull is above a half-space by more than `beyond`.
-#[inline(always)]
-fn is_sphere_apart(pair: &Pair<'_, HalfSpace>, pose: &RelativePose, beyond: f64) -> bool {
-    let center = pose.point_to_2(pair.hull.center());
-    pair.other.normal.dot(center) - pair.hull.radius() > beyond
-}
-
-/// The vertex of a hull that is deepest in a half-space.
-#[inline(always)]
-pub(crate) fn deepest(
-    pair: &Pair<'_, HalfSpace>,
-    pose: &RelativePose,
-    memory: &PairMemory,
-    cost: &mut Cost,
-) -> Proximity {
-    let (hull, normal_2) = (pair.hull, pair.other.normal);
-    let normal = -pose.direction_to_1(normal_2);
-    let start = match *memory {
-        PairMemory::None => hull.start_vertex(normal),
-        PairMemory::Axis(_, [vertex, _]) => hull.clamp_vertex(vertex),
-        PairMemory::Contact(_, [feature, _]) => feature.vertex(hull),
-    };
-    let (on_1, vertex) = hull.support(normal, start, cost);
-    let signed_distance = normal_2.dot(pose.point_to_2(on_1));
-    Proximity {
-        signed_distance,
-        normal,
-        on_1,
-        on_2: on_1 + normal * signed_distance,
-        features: [Feature::Vertex(vertex), Feature::Face(FaceId::default())],
-    }
 }

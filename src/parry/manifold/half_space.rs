@@ -1,41 +1,117 @@
-//! The contacts of a hull with a half-space.
+//! The manifold of a hull and a half-space.
 
 use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
-use super::sink::UpdateContacts;
+use super::packed_feature::unpack;
+use super::still::Still;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch};
+use crate::map_pair::map_pair;
+use crate::parry::convert::HalfSpace;
+use crate::parry::half_space::Plane;
+use crate::parry::pair::Pair;
+use crate::parry::still_cache::StillCache;
 use crate::pose::RelativePose;
-use crate::query::{LastContacts, Proximity};
-use crate::support::Support;
+use crate::query::{LastContacts, PairMemory, Proximity};
+use crate::stats::{Cost, Stage};
+use crate::support::{Support, VertexId};
 
-pub(super) struct HalfSpaceContacts<'a> {
-    pub hull: &'a Hull,
+/// The update of a manifold. One support query is all that it takes.
+pub(super) struct HalfSpaceUpdate<'a, 'm> {
+    pub pair: &'a Pair<'a, HalfSpace>,
     pub pose: &'a RelativePose,
     pub max_distance: f64,
-    pub scratch: &'a mut ClipScratch,
+    pub manifold: KernelManifold<'a, 'm>,
+    /// The contacts, if they may stay as they are.
+    pub still: Option<&'a Still>,
 }
 
-impl UpdateContacts for HalfSpaceContacts<'_> {
+impl HalfSpaceUpdate<'_, '_> {
+    /// Returns the stage that found the answer.
+    // perf: in a call all of this would go through memory.
     #[inline(always)]
-    fn pose(&self) -> Option<&RelativePose> {
-        Some(self.pose)
+    pub fn run(
+        &mut self,
+        scratch: &mut ClipScratch,
+        cache: &mut StillCache,
+        cost: &mut Cost,
+    ) -> Stage {
+        let (hull, pose) = (self.pair.hull, self.pose);
+        let plane = Plane::new(self.pair.other, pose);
+        let has_contacts = !self.manifold.manifold.is_empty();
+        // Every hull of a world is in a pair with its ground, and most of these pairs end here.
+        if plane.is_sphere_apart(hull, self.max_distance) {
+            if has_contacts {
+                self.manifold.forget();
+            }
+            return Stage::BoundingSpheres;
+        }
+        let mut last = None;
+        if has_contacts {
+            self.manifold.read_contacts(pose, &mut last);
+        }
+        let start = self.start_vertex(&plane, last.as_ref());
+        let near = plane.deepest(hull, start, cost);
+        if near.signed_distance > self.max_distance {
+            let vertex = near.features[0].vertex(hull);
+            self.manifold
+                .set_axis(near.normal, [vertex, VertexId::default()]);
+            return Stage::Axis;
+        }
+        let [border_1, border_2] = self.pair.border_radii;
+        if let Some(still) = self.still
+            && still.shows(near.signed_distance - (border_1 + border_2))
+        {
+            self.manifold.manifold.hold(still);
+            still.store(cache, near.signed_distance);
+            return Stage::Kept;
+        }
+        if self.update_contacts(last.as_ref(), &near, scratch) {
+            Stage::Kept
+        } else {
+            Stage::Feature
+        }
     }
 
+    /// Where the search for the deepest vertex begins. If several tie, this one is the answer.
+    #[inline(always)]
+    fn start_vertex(&self, plane: &Plane, last: Option<&LastContacts>) -> VertexId {
+        let hull = self.pair.hull;
+        if let Some(last) = last
+            && let points = self.manifold.manifold.points()
+            && let Some(ids) = points.features(last.deepest(plane.normal))
+        {
+            let [feature, _] = self.manifold.order.to_kernel(ids);
+            let feature = unpack(feature);
+            return feature.map_or_else(VertexId::default, |feature| feature.vertex(hull));
+        }
+        match self.manifold.memory(None) {
+            PairMemory::None => hull.start_vertex(plane.normal),
+            PairMemory::Axis(_, [vertex, _]) => hull.clamp_vertex(vertex),
+            PairMemory::Contact(_, [feature, _]) => feature.vertex(hull),
+        }
+    }
+
+    /// Writes the contacts, or leaves the `last` ones where they are. Returns whether it left them.
     #[inline(always)]
     fn update_contacts(
         &mut self,
-        manifold: &mut KernelManifold<'_, '_>,
         last: Option<&LastContacts>,
         near: &Proximity,
+        scratch: &mut ClipScratch,
     ) -> bool {
-        let (hull, pose) = (self.hull, self.pose);
-        let normals = Normals::of(near, pose);
-        let is_kept = manifold.keep_contacts(last, near, &normals, hull.radius());
+        let hull: &Hull = self.pair.hull;
+        // The plane's own normal is the one that points out of the half-space.
+        let exact = [near.normal, self.pair.other.normal];
+        let normals = Normals {
+            exact,
+            rounded: map_pair(exact, |normal| normal.as_vec3()),
+        };
+        let is_kept = (self.manifold).keep_contacts(last, near, &normals, hull.radius());
         if !is_kept {
             let contacts =
-                manifold::half_space_contacts(hull, pose, near, self.max_distance, self.scratch);
-            manifold.set_contacts(normals.rounded, &contacts);
+                manifold::half_space_contacts(hull, self.pose, near, self.max_distance, scratch);
+            self.manifold.set_contacts(normals.rounded, &contacts);
         }
         is_kept
     }

@@ -5,7 +5,7 @@ use parry3d::math::{Pose, Real};
 use parry3d::query::Unsupported;
 
 use super::erased::ErasedManifold;
-use super::half_space::HalfSpaceContacts;
+use super::half_space::HalfSpaceUpdate;
 use super::kernel_manifold::{AxisFrame, KernelManifold};
 use super::polytopes::PolytopeContacts;
 use super::sink::ManifoldSink;
@@ -87,19 +87,19 @@ impl PairVisitor for UpdateManifold<'_> {
         if self.hold_if_proved(pair.border_radii, settled.as_ref(), max_distance, workspace) {
             return Ok(());
         }
-        let contacts = HalfSpaceContacts {
-            hull: pair.hull,
+        let mut update = HalfSpaceUpdate {
+            pair,
             pose: &pose,
             max_distance,
-            scratch: &mut workspace.clip,
+            manifold: KernelManifold::new(&mut self.manifold, pair, AxisFrame::First),
+            still: settled.as_ref().map(|settled| &settled.still),
         };
-        let frame = AxisFrame::First;
-        let mut sink =
-            ManifoldSink::new(&mut self.manifold, pair, frame, contacts, settled.as_ref());
         let mut cost = Cost::default();
-        let stage = plane::run_into(pair, &pose, max_distance, &mut sink, &mut cost);
-        self.stats.record(sink.stage(stage), &cost);
-        sink.store_held(&mut workspace.still_cache);
+        let Workspace {
+            clip, still_cache, ..
+        } = workspace;
+        let stage = update.run(clip, still_cache, &mut cost);
+        self.stats.record(stage, &cost);
         Ok(())
     }
 

@@ -18,7 +18,7 @@ use crate::parry::pair::{Pair, PairVisitor, valid_pose};
 use crate::parry::visit;
 use crate::parry::workspace::Workspace;
 use crate::pose::RelativePose;
-use crate::query::{Certificate, PairMemory, QueryError, SeparationBounds};
+use crate::query::{Certificate, QueryError, SeparationBounds};
 use crate::simplex::{DistanceSubalgorithm, Preferred};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Polytope, Support};
@@ -95,7 +95,7 @@ impl PairVisitor for BoundsQuery<'_> {
         _: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
         let pose = pair.pose(valid_pose(self.pos12)?);
-        let near = half_space::deepest(pair, &pose, &PairMemory::None, &mut Cost::default());
+        let near = half_space::deepest(pair, &pose, f64::INFINITY).ok_or(Unsupported)?;
         let origin = pose.point_to_1(DVec3::ZERO);
         let size = pair.hull.radius() + pair.hull.center().length() + origin.length();
         let certificate = Certificate::Height(near.on_1);

@@ -103,8 +103,8 @@ impl PairVisitor for PatchQuery<'_> {
     ) -> Result<Self::Answer, Unsupported> {
         let pose = pair.pose(valid_pose(self.pos12)?);
         let max_distance = pair.core_distance(self.prediction, pair.hull.radius());
-        let near = half_space::deepest(pair, &pose, &PairMemory::None, &mut Cost::default());
-        Ok((near.signed_distance <= max_distance).then(|| {
+        let near = half_space::deepest(pair, &pose, max_distance);
+        Ok(near.map(|near| {
             let corners = manifold::half_space_polygon(pair.hull, &near, max_distance);
             to_caller(pair, &pose, &near, &corners)
         }))

@@ -11,7 +11,7 @@ use crate::curved::SurfacePieces;
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space;
 use crate::parry::pair::{Pair, PairVisitor, valid_pose};
-use crate::parry::scene::caller::{CallerProximity, NearestPoints};
+use crate::parry::scene::caller::{CallerProximity, KernelFrame, NearestPoints};
 use crate::parry::scene::convex;
 use crate::parry::visit;
 use crate::parry::workspace::Workspace;
@@ -192,7 +192,6 @@ pub(super) fn over_half_space(
 ) -> Result<Option<CallerProximity>, Unsupported> {
     let pose = pair.pose(valid_pose(pos12)?);
     let max_distance = pair.core_distance(max_distance, pair.hull.radius());
-    let mut sink = NearestPoints::new(pair, &pose);
-    half_space::run_into(pair, &pose, max_distance, &mut sink, &mut Cost::default());
-    Ok(sink.nearest)
+    let near = half_space::deepest(pair, &pose, max_distance);
+    Ok(near.map(|near| CallerProximity::of_proximity(&near, &KernelFrame::new(pair, &pose))))
 }
