@@ -47,9 +47,8 @@ pub fn half_space_contacts(
         );
     } else if !is_edge_on {
         let others = (0..count).filter(|&i| corner(i) != witness);
-        others
-            .take(MAX_POINTS - 1)
-            .for_each(|i| selection.push(Some(i)));
+        let most = others.take(MAX_POINTS - 1);
+        most.for_each(|i| selection.push(Some(i)));
     }
     let vertex = |i: Option<usize>| i.map_or(witness, corner);
     let [a, b, c, d] = selection.corners;

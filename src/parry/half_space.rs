@@ -20,7 +20,7 @@ pub(crate) struct Plane {
 }
 
 impl Plane {
-    #[inline(always)]
+    #[inline]
     pub fn new(half_space: &HalfSpace, pose: &RelativePose) -> Self {
         Self {
             normal: -pose.direction_to_1(half_space.normal),
@@ -28,19 +28,19 @@ impl Plane {
         }
     }
 
-    #[inline(always)]
+    #[inline]
     fn height(&self, p: DVec3) -> f64 {
         self.normal.dot(self.origin - p)
     }
 
     /// Whether the bounding sphere of a hull is above it by more than `beyond`.
-    #[inline(always)]
+    #[inline]
     pub fn is_sphere_apart(&self, hull: &Hull, beyond: f64) -> bool {
         self.height(hull.center()) - hull.radius() > beyond
     }
 
     /// The vertex of a hull that is deepest in the half-space. The search begins at `start`.
-    #[inline(always)]
+    #[inline]
     pub fn deepest(&self, hull: &Hull, start: VertexId, cost: &mut Cost) -> Proximity {
         let normal = self.normal;
         let (on_1, vertex) = hull.support(normal, start, cost);

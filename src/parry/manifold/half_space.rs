@@ -53,24 +53,19 @@ impl HalfSpaceUpdate<'_, '_> {
         let start = self.start_vertex(&plane, last.as_ref());
         let near = plane.deepest(hull, start, cost);
         if near.signed_distance > self.max_distance {
-            let vertex = near.features[0].vertex(hull);
-            self.manifold
-                .set_axis(near.normal, [vertex, VertexId::default()]);
+            let vertices = [near.features[0].vertex(hull), VertexId::default()];
+            self.manifold.set_axis(near.normal, vertices);
             return Stage::Axis;
         }
-        let [border_1, border_2] = self.pair.border_radii;
-        if let Some(still) = self.still
-            && still.shows(near.signed_distance - (border_1 + border_2))
-        {
+        let borders: f64 = self.pair.border_radii.iter().sum();
+        let signed_distance = near.signed_distance - borders;
+        if let Some(still) = self.still.filter(|still| still.shows(signed_distance)) {
             self.manifold.manifold.hold(still);
             still.store(cache, near.signed_distance);
             return Stage::Kept;
         }
-        if self.update_contacts(last.as_ref(), &near, scratch) {
-            Stage::Kept
-        } else {
-            Stage::Feature
-        }
+        let is_kept = self.update_contacts(last.as_ref(), &near, scratch);
+        if is_kept { Stage::Kept } else { Stage::Feature }
     }
 
     /// Where the search for the deepest vertex begins. If several tie, this one is the answer.
