@@ -115,6 +115,10 @@ pub(crate) const LONGEST_STEP: f64 = 0.5;
 /// Each step of Newton's method doubles the number of correct digits.
 pub(crate) const MAX_NEWTON_STEPS: usize = 5;
 
+/// The most steps to the nearest place of a segment: three or four usually suffice, twice as many where one crosses a rim
+/// at a small angle.
+pub(crate) const MAX_SEGMENT_STEPS: usize = 12;
+
 /// A face seems flat if its fourth corner is no higher over the first three than this share of its length.
 /// Then flat sides are tried first.
 pub(crate) const SEEMS_FLAT: f64 = 1e-5;

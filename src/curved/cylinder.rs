@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::piece::{FlatSide, Generator, Piece, RuledSurface, TangentBall};
 use super::round;
-use super::surface_pieces::{CircularEdge, Ruling, SurfacePieces};
+use super::surface_pieces::{CircularEdge, Foot, Ruling, SurfacePieces};
 use crate::primitive::Cylinder;
 use crate::stats::Cost;
 use crate::support::VertexId;
@@ -50,6 +50,25 @@ impl SurfacePieces for Cylinder {
         (p - p.with_y(0.0) * (radius / self.rim_radius()), radius)
     }
 
+    fn foot(&self, p: DVec3, v: DVec3) -> Option<Foot> {
+        let (half_height, radius) = (self.half_height(), self.rim_radius());
+        let height = p.y.clamp(-half_height, half_height);
+        let along = if p.y == height { v.y * v.y } else { 0.0 };
+        let across = p.with_y(0.0);
+        let from_axis = across.length();
+        if from_axis > radius {
+            let share = radius / from_axis;
+            return Some(Foot {
+                at: (across * share).with_y(height),
+                following: along + share * round::around_axis(across, v),
+            });
+        }
+        (p.y != height).then(|| Foot {
+            at: across.with_y(height),
+            following: v.x * v.x + v.z * v.z,
+        })
+    }
+
     fn rulings(&self, _: DVec3, _: VertexId) -> impl Iterator<Item = Ruling> {
         std::iter::once(Ruling {
             axis: DVec3::Y,
@@ -71,7 +90,7 @@ impl SurfacePieces for Cylinder {
 
     fn piece(&self, dir: DVec3, _: VertexId, border: f64, _: &mut Vec<(DVec3, VertexId)>) -> Piece {
         let (half_height, radius) = (self.half_height(), self.rim_radius());
-        if dir.y.abs() >= dir.x.hypot(dir.z) {
+        if dir.y.abs() >= dir.with_y(0.0).length() {
             return Piece::Flat(self.cap(dir, border));
         }
         let outward = DVec3::new(dir.x, 0.0, dir.z).normalize_or(DVec3::X);

@@ -148,7 +148,7 @@ impl Generator {
 impl RuledSurface {
     /// The sine of the angle between the outward normals and the plane across the axis.
     pub fn sine(&self) -> f64 {
-        -self.slope / self.slope.hypot(1.0)
+        -self.slope / (1.0 + self.slope * self.slope).sqrt()
     }
 
     /// The radius at the height of `p`.
@@ -160,7 +160,7 @@ impl RuledSurface {
     pub fn normal_at(&self, p: DVec3) -> DVec3 {
         let across = (p - self.origin).reject_from_normalized(self.axis);
         let around = across.normalize_or_zero();
-        (around - self.axis * self.slope) / self.slope.hypot(1.0)
+        (around - self.axis * self.slope).normalize_or_zero()
     }
 
     /// The distance along the unit vector `dir` at which the line through `p` leaves the surface. Of two such

@@ -7,7 +7,7 @@ use super::surface_pieces::{CircularEdge, Ruling, SurfacePieces};
 use crate::primitive::nearest_share;
 use crate::query::inset;
 use crate::stats::Cost;
-use crate::support::{Polytope, VertexId};
+use crate::support::{FaceId, Polytope, VertexId};
 use crate::tolerance::KEPT_ANGLE_COS;
 use crate::tuning::EDGE_ON;
 
@@ -46,6 +46,12 @@ impl<P: Polytope> SurfacePieces for P {
 
     fn ball_at(&self, p: DVec3) -> (DVec3, f64) {
         (p, 0.0)
+    }
+
+    fn segment(&self) -> Option<[DVec3; 2]> {
+        let face = FaceId::default();
+        let end = |i: usize| self.vertex(self.face_vertex(face, i));
+        (self.face_len(face) == 2).then(|| [end(0), end(1)])
     }
 
     fn rulings(&self, _: DVec3, vertex: VertexId) -> impl Iterator<Item = Ruling> {

@@ -89,7 +89,7 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
             _ => Start::Warm,
         };
         if let Hint::Contact(normals, _) = hint
-            && let Some(answer) = self.at_rest(normals)
+            && let Some(answer) = self.on_segment().or_else(|| self.at_rest(normals))
         {
             return Some((answer, Stage::Feature));
         }
@@ -99,6 +99,11 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
         }
         if at.distance > self.max_distance {
             return Some((apart(&at), Stage::Axis));
+        }
+        if !matches!(hint, Hint::Contact(..))
+            && let Some(answer) = self.on_segment()
+        {
+            return Some((answer, Stage::Feature));
         }
         let is_deep = matches!(hint, Hint::Contact(_, true));
         let best = match self.stationary(&at) {

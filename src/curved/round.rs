@@ -19,7 +19,7 @@ pub(super) fn end(normal: DVec3, offset: f64, radius: f64) -> FlatSide {
 
 /// The distance of a point in the plane of an end from its rim, positive inside.
 pub(super) fn inset_of_end(p: DVec3, radius: f64) -> f64 {
-    radius - p.x.hypot(p.z)
+    radius - p.with_y(0.0).length()
 }
 
 /// Whether a unit vector is nearly parallel to the axis.
@@ -38,4 +38,10 @@ pub(super) fn point_on_end(near: DVec3, height: f64, radius: f64) -> Option<DVec
 pub(super) fn point_on_circle(dir: DVec3, height: f64, radius: f64) -> DVec3 {
     let across = dir.with_y(0.0);
     (across * (radius / across.length_squared().sqrt())).with_y(height)
+}
+
+/// The squared length of the part of `v` that turns a point about the axis. `across` leads to the point.
+pub(super) fn around_axis(across: DVec3, v: DVec3) -> f64 {
+    let turn = across.x * v.z - across.z * v.x;
+    turn * turn / across.length_squared()
 }

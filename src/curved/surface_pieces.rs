@@ -29,6 +29,15 @@ pub struct CircularEdge {
     pub radius: f64,
 }
 
+/// The nearest point of a solid to a point outside of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Foot {
+    /// Where it is.
+    pub at: DVec3,
+    /// `v · dp`, where `dp` is how fast it moves as the point outside moves by `v`.
+    pub following: f64,
+}
+
 /// A convex shape whose surface consists of flat sides, ruled sides, edges and vertices. Everything is in its own
 /// frame.
 pub trait SurfacePieces: Support {
@@ -44,6 +53,18 @@ pub trait SurfacePieces: Support {
     /// The centre and radius of a ball inside the shape that touches the surface at `p`, a point of a ruled
     /// side. On other pieces, `p` itself with radius zero.
     fn ball_at(&self, p: DVec3) -> (DVec3, f64);
+
+    /// The ends, if the shape is a segment.
+    fn segment(&self) -> Option<[DVec3; 2]> {
+        None
+    }
+
+    /// The point that is nearest to a point `p` outside, which moves by `v`, if that is known in closed form. `None`
+    /// if `p` is inside.
+    fn foot(&self, p: DVec3, v: DVec3) -> Option<Foot> {
+        let _ = (p, v);
+        None
+    }
 
     /// The edges at `vertex`, which is extreme along `dir`, and the ruled sides.
     fn rulings(&self, dir: DVec3, vertex: VertexId) -> impl Iterator<Item = Ruling>;

@@ -14,6 +14,7 @@ pub struct Cone {
     rim: Rim,
     center: DVec3,
     radius: f64,
+    lean: [f64; 2],
 }
 
 impl Cone {
@@ -21,11 +22,15 @@ impl Cone {
     pub fn new(half_height: f64, radius: f64) -> Self {
         // The centre of mass: a quarter of the way up.
         let above_base = 0.5 * half_height;
+        let to_rim = (radius * radius + above_base * above_base).sqrt();
+        let height = 2.0 * half_height;
+        let slant = (radius * radius + height * height).sqrt();
         Self {
             half_height,
             rim: Rim { radius },
             center: DVec3::new(0.0, above_base - half_height, 0.0),
-            radius: radius.hypot(above_base).max(2.0 * half_height - above_base),
+            radius: to_rim.max(height - above_base),
+            lean: [radius / slant, height / slant],
         }
     }
 
@@ -35,6 +40,11 @@ impl Cone {
 
     pub(crate) fn rim_radius(&self) -> f64 {
         self.rim.radius
+    }
+
+    /// The sine and the cosine of the angle between the side's normals and the base.
+    pub(crate) fn lean(&self) -> [f64; 2] {
+        self.lean
     }
 
     /// By how much the radius shrinks along the axis.

@@ -20,7 +20,7 @@ impl Cylinder {
         Self {
             half_height,
             rim: Rim { radius },
-            radius: half_height.hypot(radius),
+            radius: (half_height * half_height + radius * radius).sqrt(),
         }
     }
 

@@ -2,6 +2,7 @@
 
 mod curved_oracle;
 mod every_start;
+mod feet;
 mod hill_climbing;
 mod hull_errors;
 mod oracle;

@@ -171,7 +171,7 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         let radius = self.cso.min_radius();
         let kept = manifold.keep_places(self.last, self.least, &normals, radius);
         if kept.is_none() {
-            patch.complete(self.cso, self.border_radii);
+            patch.complete_beside_deepest(self.cso, self.border_radii);
             manifold.set_contacts(normals.rounded, &self.contacts(patch));
         }
         kept.is_some()
