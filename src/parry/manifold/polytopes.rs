@@ -5,12 +5,10 @@ use parry3d::math::Pose;
 
 use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
-use super::sink::UpdateContacts;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch, Contacts};
 use crate::parry::constraints::{ConstrainedPair, Constraints, Corrected};
-use crate::pose::RelativePose;
-use crate::query::{self, FlushFaces, LastContacts, Proximity};
+use crate::query::{self, LastContacts, Proximity};
 use crate::support::{Cso, Polytope};
 use crate::tolerance::UNCORRECTED;
 use crate::tuning::ABSURD_DEPTH;
@@ -24,23 +22,10 @@ pub(super) struct PolytopeContacts<'a, 'c, B> {
     pub scratch: &'a mut ClipScratch,
 }
 
-impl<B: Polytope> UpdateContacts for PolytopeContacts<'_, '_, B> {
+impl<B: Polytope> PolytopeContacts<'_, '_, B> {
+    /// Writes the contacts, or leaves the `last` ones where they are. Returns whether it left them.
     #[inline(always)]
-    fn pose(&self) -> Option<&RelativePose> {
-        Some(self.cso.pose)
-    }
-
-    fn flush_faces(
-        &self,
-        manifold: &KernelManifold<'_, '_>,
-        last: &LastContacts,
-    ) -> Option<FlushFaces> {
-        manifold.flush_faces(self.cso, last)
-    }
-
-    /// Leaves the contacts where they are, if that is right, or chooses them anew.
-    #[inline(always)]
-    fn update_contacts(
+    pub fn update_contacts(
         &mut self,
         manifold: &mut KernelManifold<'_, '_>,
         last: Option<&LastContacts>,
@@ -63,10 +48,8 @@ impl<B: Polytope> UpdateContacts for PolytopeContacts<'_, '_, B> {
         }
         is_kept
     }
-}
 
-impl<B: Polytope> PolytopeContacts<'_, '_, B> {
-    /// Like [`update`](Self::update), along normals that the constraints correct.
+    /// Like [`update_contacts`](Self::update_contacts), along normals that the constraints correct.
     fn update_constrained(
         mut self,
         manifold: &mut KernelManifold<'_, '_>,

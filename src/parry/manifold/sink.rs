@@ -2,48 +2,22 @@
 
 use super::erased::ErasedManifold;
 use super::kernel_manifold::{AxisFrame, KernelManifold};
+use super::polytopes::PolytopeContacts;
 use super::still::{SettledContacts, Still};
 use crate::gjk::SeparatingAxis;
 use crate::parry::pair::Pair;
 use crate::parry::still_cache::StillCache;
-use crate::pose::RelativePose;
 use crate::query::{FlushFaces, LastContacts, PairMemory, Proximity, Sink};
 use crate::stats::Stage;
-use crate::support::{Cso, Support};
-
-/// Finds the contacts of shapes that are near each other.
-pub(super) trait UpdateContacts {
-    /// The pose of the second shape, if contacts may stay where they were.
-    fn pose(&self) -> Option<&RelativePose> {
-        None
-    }
-
-    /// The faces that the `last` contacts lie on, if these hardly moved.
-    fn flush_faces(
-        &self,
-        manifold: &KernelManifold<'_, '_>,
-        last: &LastContacts,
-    ) -> Option<FlushFaces> {
-        let _ = (manifold, last);
-        None
-    }
-
-    /// Writes the contacts, or leaves the `last` ones where they are. Returns whether it left them.
-    fn update_contacts(
-        &mut self,
-        manifold: &mut KernelManifold<'_, '_>,
-        last: Option<&LastContacts>,
-        near: &Proximity,
-    ) -> bool;
-}
+use crate::support::{Cso, Polytope, Support};
 
 /// Brings a manifold up to date. It holds only references: most pairs are apart, and copies that only contacts
 /// need would cost them more than the rest.
-pub(super) struct ManifoldSink<'a, 'm, 'p, B, U> {
+pub(super) struct ManifoldSink<'a, 'm, B> {
     manifold: &'a mut ErasedManifold<'m>,
-    pair: &'a Pair<'p, B>,
+    pair: &'a Pair<'a, B>,
     frame: AxisFrame<'a>,
-    contacts: U,
+    contacts: PolytopeContacts<'a, 'a, B>,
     /// The contacts of the manifold. They are read when they are first needed.
     last: Option<LastContacts>,
     /// The same, if they may stay as they are.
@@ -55,14 +29,14 @@ pub(super) struct ManifoldSink<'a, 'm, 'p, B, U> {
     still_apart: Option<f64>,
 }
 
-impl<'a, 'm, 'p, B, U> ManifoldSink<'a, 'm, 'p, B, U> {
+impl<'a, 'm, B: Polytope> ManifoldSink<'a, 'm, B> {
     /// A sink for a manifold. `settled` are its contacts, if they may stay as they are.
     #[inline(always)]
     pub fn new(
         manifold: &'a mut ErasedManifold<'m>,
-        pair: &'a Pair<'p, B>,
+        pair: &'a Pair<'a, B>,
         frame: AxisFrame<'a>,
-        contacts: U,
+        contacts: PolytopeContacts<'a, 'a, B>,
         settled: Option<&'a SettledContacts>,
     ) -> Self {
         Self {
@@ -116,15 +90,12 @@ impl<'a, 'm, 'p, B, U> ManifoldSink<'a, 'm, 'p, B, U> {
 }
 
 // perf: in calls the answers would go through memory, which pairs that are apart notice.
-impl<B, U: UpdateContacts> Sink for ManifoldSink<'_, '_, '_, B, U> {
+impl<B: Polytope> Sink for ManifoldSink<'_, '_, B> {
     #[inline(always)]
     fn memory(&mut self) -> PairMemory {
         let manifold = KernelManifold::new(self.manifold, self.pair, self.frame);
-        if !manifold.manifold.is_empty()
-            && self.last.is_none()
-            && let Some(pose) = self.contacts.pose()
-        {
-            manifold.read_contacts(pose, &mut self.last);
+        if !manifold.manifold.is_empty() && self.last.is_none() {
+            manifold.read_contacts(self.contacts.cso.pose, &mut self.last);
         }
         manifold.memory(self.last.as_ref())
     }
@@ -132,7 +103,7 @@ impl<B, U: UpdateContacts> Sink for ManifoldSink<'_, '_, '_, B, U> {
     #[inline]
     fn flush_faces(&mut self) -> Option<FlushFaces> {
         let manifold = KernelManifold::new(self.manifold, self.pair, self.frame);
-        self.contacts.flush_faces(&manifold, self.last.as_ref()?)
+        manifold.flush_faces(self.contacts.cso, self.last.as_ref()?)
     }
 
     #[inline(always)]
