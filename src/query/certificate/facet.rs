@@ -146,21 +146,21 @@ impl FacetTest {
             return false;
         }
         let (corners, radius) = (cso.shape_1.face_corners(face), cso.shape_1.radius());
-        let inset = || inset(corners, radius, normal, on_2, signed_distance);
-        let proves = |inset| {
-            inset > 0.0 && (depth <= 0.0 || cone_contains_ball(inset, depth, cso.center(), normal))
+        let mut flush_faces_prove = |is_over: bool| {
+            flush().is_some_and(|flush| {
+                let faces = [face, flush.faces[1]];
+                let flush = FlushFaces { faces, ..flush };
+                flush.prove_vertex(cso, (on_2, is_over), signed_distance, -depth)
+            })
         };
-        let few = (corners.count() <= MANY_SIDES).then(inset);
-        if few.is_some_and(proves) {
+        let has_many_sides = corners.count() > MANY_SIDES;
+        if has_many_sides && flush_faces_prove(false) {
             return true;
         }
-        let is_over = few.is_some_and(|inset| inset > 0.0);
-        let over_flush_faces = flush().is_some_and(|flush| {
-            let faces = [face, flush.faces[1]];
-            let flush = FlushFaces { faces, ..flush };
-            flush.prove_vertex(cso, (on_2, is_over), signed_distance, -depth)
-        });
-        over_flush_faces || few.is_none() && proves(inset())
+        let inset = inset(corners, radius, normal, on_2, signed_distance);
+        let is_over = inset > 0.0;
+        is_over && (depth <= 0.0 || cone_contains_ball(inset, depth, cso.center(), normal))
+            || !has_many_sides && flush_faces_prove(is_over)
     }
 
     /// Two edges that cross; everything in frame 1.

@@ -114,7 +114,8 @@ fn least_of(four: f32x4) -> f32 {
 #[inline]
 fn four_by_four(corner: impl Fn(usize) -> Vec3, count: usize, mut call: impl FnMut([Vec3; 5])) {
     let wrapped = |i: usize| corner(if i < count { i } else { i - count });
-    for i in (0..count).step_by(LANES) {
+    let mut i = 0;
+    while i < count {
         let ends = [
             corner(i),
             wrapped(i + 1),
@@ -123,6 +124,7 @@ fn four_by_four(corner: impl Fn(usize) -> Vec3, count: usize, mut call: impl FnM
             wrapped(i + 4),
         ];
         call(ends);
+        i += LANES;
     }
 }
 
