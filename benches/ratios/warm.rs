@@ -81,7 +81,7 @@ pub fn curved() {
 }
 
 /// The second shape of each has a flat end, and the first one is a metre high, too.
-fn curved_pairs() -> [(&'static str, [SharedShape; 2]); 9] {
+fn curved_pairs() -> [(&'static str, [SharedShape; 2]); 10] {
     let cylinder = || SharedShape::cylinder(0.5, 0.4);
     let cone = || SharedShape::cone(0.5, 0.4);
     let cuboid = || SharedShape::cuboid(0.4, 0.5, 0.6);
@@ -90,7 +90,7 @@ fn curved_pairs() -> [(&'static str, [SharedShape; 2]); 9] {
     let corners = [[-2.0, 0.5, -2.0], [2.0, 0.5, -2.0], [0.0, 0.5, 2.0]];
     let [a, b, c] = corners.map(Vector::from);
     let triangle = SharedShape::triangle(a, b, c);
-    let capsule = SharedShape::capsule_y(0.2, 0.3);
+    let capsule = || SharedShape::capsule_y(0.2, 0.3);
     [
         ("cuboid, cylinder", [cuboid(), cylinder()]),
         ("cylinder, cylinder", [cylinder(), cylinder()]),
@@ -100,6 +100,7 @@ fn curved_pairs() -> [(&'static str, [SharedShape; 2]); 9] {
         ("prism of 24 sides, cone", [prism(), cone()]),
         ("triangle, cylinder", [triangle, cylinder()]),
         ("round cuboid, cylinder", [round_cuboid, cylinder()]),
-        ("capsule, cylinder", [capsule, cylinder()]),
+        ("capsule, cylinder", [capsule(), cylinder()]),
+        ("capsule, cone", [capsule(), cone()]),
     ]
 }
