@@ -131,12 +131,14 @@ fn every_convex_pair_is_answered_exactly() {
         // Bodies of other sizes for each kind.
         let all = bodies(&mut rng);
         let a = &all[kind];
-        for b in &all {
+        for (other, b) in all.iter().enumerate() {
             if is_half_space(a) && is_half_space(b) {
                 continue;
             }
             for meeting in Meeting::ALL {
-                for gap in GAPS {
+                // Two kinds meet in either order: in one at every other gap, in the other at the rest.
+                let first = usize::from(kind < other);
+                for gap in GAPS.into_iter().skip(first).step_by(2) {
                     let size = a.diameter().min(b.diameter());
                     let Some(pose) = meeting.pose(&mut rng, [a, b], gap * size) else {
                         continue;
@@ -153,5 +155,5 @@ fn every_convex_pair_is_answered_exactly() {
             }
         }
     }
-    assert!(checked > 4000, "only {checked}");
+    assert!(checked > 2000, "only {checked}");
 }

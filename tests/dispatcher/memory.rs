@@ -82,7 +82,7 @@ fn hulls_that_came_and_went_take_no_memory() {
         let dispatcher = IsaGjkDispatcher::default();
         let mut rng = Rng::new(131);
         let before = bytes();
-        let most = churn(&dispatcher, &mut rng, 5_000, 30);
+        let most = churn(&dispatcher, &mut rng, 3_000, 30);
         assert!(most < 48 * MIB, "{} MiB at most", most / MIB);
         dispatcher.trim();
         let stays = bytes().saturating_sub(before);
