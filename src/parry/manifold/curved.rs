@@ -6,7 +6,7 @@ use parry3d::query::Unsupported;
 
 use super::kernel_manifold::{AxisFrame, KernelManifold};
 use super::normals::Normals;
-use super::still::{SettledContacts, Still};
+use super::still::Still;
 use super::update::UpdateManifold;
 use crate::curved::{self, CurvedAnswer, CurvedQuery, Hint, Patch, SurfacePieces};
 use crate::manifold::Contacts;
@@ -33,15 +33,15 @@ impl UpdateManifold<'_> {
         let borders = pair.border_radii[0] + pair.border_radii[1];
         let touching = MIN_DIRECTED_DISTANCE * (cso.size() + borders);
         let max_distance = f64::from(self.prediction) + touching;
-        let mut settled = None;
-        self.read_settled(pair, &pose, &mut settled, |rotation, key| {
+        let (mut last, mut still) = (None, None);
+        self.read_settled(pair, &pose, (&mut last, &mut still), |rotation, key| {
             StillPair::of(&cso, rotation, key)
         });
         let reach = max_distance + borders;
-        if self.hold_if_proved(pair.border_radii, settled.as_ref(), reach, workspace) {
+        if self.hold_if_proved(pair.border_radii, still.as_ref(), reach, workspace) {
             return Ok(());
         }
-        self.query_curved(pair, &cso, max_distance, settled.as_ref(), workspace)
+        self.query_curved(pair, &cso, max_distance, (last, still.as_ref()), workspace)
     }
 
     /// Up to a maximum distance of the shapes with their borders.
@@ -50,13 +50,12 @@ impl UpdateManifold<'_> {
         pair: &Pair<'_, B, A>,
         cso: &Cso<'_, A, B>,
         max_distance: f64,
-        settled: Option<&SettledContacts>,
+        (mut last, still): (Option<LastContacts>, Option<&Still>),
         workspace: &mut Workspace,
     ) -> Result<(), Unsupported> {
         let borders = pair.border_radii[0] + pair.border_radii[1];
         let frame = AxisFrame::of(cso);
         let mut manifold = KernelManifold::with_borders(&mut self.manifold, pair.order, frame);
-        let mut last = settled.map(|settled| settled.last);
         if last.is_none() {
             manifold.read_contacts(cso.pose, &mut last);
         }
@@ -89,7 +88,6 @@ impl UpdateManifold<'_> {
                     max_distance,
                     last: last.as_ref(),
                 };
-                let still = settled.map(|settled| &settled.still);
                 let is_kept = self.update_contacts(&near, still, workspace);
                 if is_kept && stage == Stage::Feature {
                     stage = Stage::Kept;

@@ -24,6 +24,8 @@ pub(super) struct HalfSpaceUpdate<'a, 'm> {
     pub manifold: KernelManifold<'a, 'm>,
     /// The contacts, if they may stay as they are.
     pub still: Option<&'a Still>,
+    /// The contacts, once they are read.
+    pub last: &'a mut Option<LastContacts>,
 }
 
 impl HalfSpaceUpdate<'_, '_> {
@@ -46,11 +48,10 @@ impl HalfSpaceUpdate<'_, '_> {
             }
             return Stage::BoundingSpheres;
         }
-        let mut last = None;
-        if has_contacts {
-            self.manifold.read_contacts(pose, &mut last);
+        if has_contacts && self.last.is_none() {
+            self.manifold.read_contacts(pose, self.last);
         }
-        let start = self.start_vertex(&plane, last.as_ref());
+        let start = self.start_vertex(&plane);
         let near = plane.deepest(hull, start, cost);
         if near.signed_distance > self.max_distance {
             let vertices = [near.features[0].vertex(hull), VertexId::default()];
@@ -64,15 +65,15 @@ impl HalfSpaceUpdate<'_, '_> {
             still.store(cache, near.signed_distance);
             return Stage::Kept;
         }
-        let is_kept = self.update_contacts(last.as_ref(), &near, scratch);
+        let is_kept = self.update_contacts(&near, scratch);
         if is_kept { Stage::Kept } else { Stage::Feature }
     }
 
     /// Where the search for the deepest vertex begins. If several tie, this one is the answer.
     #[inline(always)]
-    fn start_vertex(&self, plane: &Plane, last: Option<&LastContacts>) -> VertexId {
+    fn start_vertex(&self, plane: &Plane) -> VertexId {
         let hull = self.pair.hull;
-        if let Some(last) = last
+        if let Some(last) = &*self.last
             && let points = self.manifold.manifold.points()
             && let Some(ids) = points.features(last.deepest(plane.normal))
         {
@@ -89,12 +90,7 @@ impl HalfSpaceUpdate<'_, '_> {
 
     /// Writes the contacts, or leaves the `last` ones where they are. Returns whether it left them.
     #[inline(always)]
-    fn update_contacts(
-        &mut self,
-        last: Option<&LastContacts>,
-        near: &Proximity,
-        scratch: &mut ClipScratch,
-    ) -> bool {
+    fn update_contacts(&mut self, near: &Proximity, scratch: &mut ClipScratch) -> bool {
         let hull: &Hull = self.pair.hull;
         // The plane's own normal is the one that points out of the half-space.
         let exact = [near.normal, self.pair.other.normal];
@@ -102,7 +98,8 @@ impl HalfSpaceUpdate<'_, '_> {
             exact,
             rounded: map_pair(exact, |normal| normal.as_vec3()),
         };
-        let is_kept = (self.manifold).keep_contacts(last, near, &normals, hull.radius());
+        let is_kept =
+            (self.manifold).keep_contacts(self.last.as_ref(), near, &normals, hull.radius());
         if !is_kept {
             let contacts =
                 manifold::half_space_contacts(hull, self.pose, near, self.max_distance, scratch);

@@ -3,7 +3,7 @@
 use super::erased::ErasedManifold;
 use super::kernel_manifold::{AxisFrame, KernelManifold};
 use super::polytopes::PolytopeContacts;
-use super::still::{SettledContacts, Still};
+use super::still::Still;
 use crate::gjk::SeparatingAxis;
 use crate::parry::pair::Pair;
 use crate::parry::still_cache::StillCache;
@@ -19,7 +19,7 @@ pub(super) struct ManifoldSink<'a, 'm, B> {
     frame: AxisFrame<'a>,
     contacts: PolytopeContacts<'a, 'a, B>,
     /// The contacts of the manifold. They are read when they are first needed.
-    last: Option<LastContacts>,
+    last: &'a mut Option<LastContacts>,
     /// The same, if they may stay as they are.
     still: Option<&'a Still>,
     is_kept: bool,
@@ -30,22 +30,23 @@ pub(super) struct ManifoldSink<'a, 'm, B> {
 }
 
 impl<'a, 'm, B: Polytope> ManifoldSink<'a, 'm, B> {
-    /// A sink for a manifold. `settled` are its contacts, if they may stay as they are.
+    /// A sink for a manifold. `still` are its contacts, if they may stay as they are.
     #[inline(always)]
     pub fn new(
         manifold: &'a mut ErasedManifold<'m>,
         pair: &'a Pair<'a, B>,
         frame: AxisFrame<'a>,
         contacts: PolytopeContacts<'a, 'a, B>,
-        settled: Option<&'a SettledContacts>,
+        last: &'a mut Option<LastContacts>,
+        still: Option<&'a Still>,
     ) -> Self {
         Self {
             manifold,
             pair,
             frame,
             contacts,
-            last: None,
-            still: settled.map(|settled| &settled.still),
+            last,
+            still,
             is_kept: false,
             held_at: None,
             still_apart: None,
@@ -95,7 +96,7 @@ impl<B: Polytope> Sink for ManifoldSink<'_, '_, B> {
     fn memory(&mut self) -> PairMemory {
         let manifold = KernelManifold::new(self.manifold, self.pair, self.frame);
         if !manifold.manifold.is_empty() && self.last.is_none() {
-            manifold.read_contacts(self.contacts.cso.pose, &mut self.last);
+            manifold.read_contacts(self.contacts.cso.pose, self.last);
         }
         manifold.memory(self.last.as_ref())
     }

@@ -14,13 +14,6 @@ use crate::query::{LastContacts, first_least};
 use crate::simd::LANES;
 use crate::tolerance::{DEPTH_ERROR, KEPT_DRIFT, STILL_DEPTH, STILL_TILT};
 
-/// The contacts of a manifold before its update, if the shapes have hardly turned and the contacts are still in
-/// their places.
-pub(super) struct SettledContacts {
-    pub last: LastContacts,
-    pub still: Still,
-}
-
 /// Contacts of a pair at rest, measured along the stored normal at the present pose.
 pub(super) struct Still {
     distances: [f64; LANES],
@@ -29,34 +22,31 @@ pub(super) struct Still {
     pair: StillPair,
 }
 
-impl SettledContacts {
-    /// Reads the contacts, unless they have left their places.
-    // perf: inlined, it costs pairs that move 2 % more instructions.
+impl Still {
+    /// Reads the contacts into `last`, and measures them in `still` unless they have left their places.
+    // perf: inlined, it costs pairs that move 2 % more instructions. Returning the answers would copy them.
     #[inline(never)]
     pub fn read(
         manifold: &KernelManifold<'_, '_>,
         pose: &RelativePose,
         pair: StillPair,
-        settled: &mut Option<Self>,
+        last: &mut Option<LastContacts>,
+        still: &mut Option<Self>,
     ) {
-        let mut last = None;
-        manifold.read_contacts(pose, &mut last);
+        manifold.read_contacts(pose, last);
         if let (Some(last), Some([normal, _])) = (last, manifold.normals())
             && last.are_within(normal, KEPT_DRIFT * pair.radius)
         {
             let distances = last.distances(normal).to_array();
             let least = distances[first_least(distances)];
-            let still = Still {
+            *still = Some(Self {
                 distances,
                 least,
                 pair,
-            };
-            *settled = Some(Self { last, still });
+            });
         }
     }
-}
 
-impl Still {
     /// Whether an earlier certificate proves that a query up to a maximum distance would leave the contacts as they
     /// are.
     #[inline]

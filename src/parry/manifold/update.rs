@@ -9,7 +9,7 @@ use super::half_space::HalfSpaceUpdate;
 use super::kernel_manifold::{AxisFrame, KernelManifold};
 use super::polytopes::PolytopeContacts;
 use super::sink::ManifoldSink;
-use super::still::{self, SettledContacts};
+use super::still::{Still, is_settled};
 use crate::curved::SurfacePieces;
 use crate::hull::Hull;
 use crate::parry::apart_cache::ApartPair;
@@ -20,7 +20,7 @@ use crate::parry::pair::{Pair, PairVisitor, valid_pose};
 use crate::parry::still_cache::StillPair;
 use crate::parry::workspace::Workspace;
 use crate::pose::RelativePose;
-use crate::query::{Full, Query};
+use crate::query::{Full, LastContacts, Query};
 use crate::stats::{Cost, SharedStats, Stage};
 use crate::support::{Cso, Polytope, Support};
 
@@ -53,11 +53,11 @@ impl PairVisitor for UpdateManifold<'_> {
         }
         let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
-        let mut settled = None;
-        self.read_settled(pair, &pose, &mut settled, |rotation, key| {
+        let (mut last, mut still) = (None, None);
+        self.read_settled(pair, &pose, (&mut last, &mut still), |rotation, key| {
             StillPair::of(&cso, rotation, key)
         });
-        if self.hold_if_proved(pair.border_radii, settled.as_ref(), max_distance, workspace) {
+        if self.hold_if_proved(pair.border_radii, still.as_ref(), max_distance, workspace) {
             return Ok(());
         }
         let mut cost = Cost::default();
@@ -65,7 +65,7 @@ impl PairVisitor for UpdateManifold<'_> {
             pair,
             &cso,
             max_distance,
-            settled.as_ref(),
+            (&mut last, still.as_ref()),
             workspace,
             &mut cost,
         )?;
@@ -80,11 +80,11 @@ impl PairVisitor for UpdateManifold<'_> {
     ) -> Result<(), Unsupported> {
         let pose = pair.pose(valid_pose(self.pos12)?);
         let max_distance = pair.core_distance(self.prediction, pair.hull.radius());
-        let mut settled = None;
-        self.read_settled(pair, &pose, &mut settled, |rotation, key| {
+        let (mut last, mut still) = (None, None);
+        self.read_settled(pair, &pose, (&mut last, &mut still), |rotation, key| {
             plane::still_pair(pair, &pose, rotation, key)
         });
-        if self.hold_if_proved(pair.border_radii, settled.as_ref(), max_distance, workspace) {
+        if self.hold_if_proved(pair.border_radii, still.as_ref(), max_distance, workspace) {
             return Ok(());
         }
         let mut update = HalfSpaceUpdate {
@@ -92,7 +92,8 @@ impl PairVisitor for UpdateManifold<'_> {
             pose: &pose,
             max_distance,
             manifold: KernelManifold::new(&mut self.manifold, pair, AxisFrame::First),
-            still: settled.as_ref().map(|settled| &settled.still),
+            still: still.as_ref(),
+            last: &mut last,
         };
         let mut cost = Cost::default();
         let Workspace {
@@ -113,23 +114,23 @@ impl PairVisitor for UpdateManifold<'_> {
 }
 
 impl<'a> UpdateManifold<'a> {
-    /// Reads the contacts of the manifold, if they may stay as they are. They are written to `settled`: a return value
-    /// would be copied even where there are none.
+    /// Reads the contacts of the manifold, if they may stay as they are: into `last`, and `still` unless they left their
+    /// places. Return values would be copied even where there are none.
     #[inline]
     pub(super) fn read_settled<B, A>(
         &mut self,
         pair: &Pair<'_, B, A>,
         pose: &RelativePose,
-        settled: &mut Option<SettledContacts>,
+        (last, still): (&mut Option<LastContacts>, &mut Option<Still>),
         still_pair: impl FnOnce(Quat, u64) -> Option<StillPair>,
     ) {
         // Corrected normals need not be those of the query.
         if matches!(self.constraints, [Constraints::None, Constraints::None])
-            && still::is_settled(&self.manifold, pair.order, pose)
+            && is_settled(&self.manifold, pair.order, pose)
             && let Some(still_pair) = still_pair(self.pos12.rotation, self.manifold.key())
         {
             let manifold = KernelManifold::new(&mut self.manifold, pair, AxisFrame::First);
-            SettledContacts::read(&manifold, pose, still_pair, settled);
+            Still::read(&manifold, pose, still_pair, last, still);
         }
     }
 
@@ -138,11 +139,11 @@ impl<'a> UpdateManifold<'a> {
     pub(super) fn hold_if_proved(
         &mut self,
         border_radii: [f64; 2],
-        settled: Option<&SettledContacts>,
+        still: Option<&Still>,
         max_distance: f64,
         workspace: &Workspace,
     ) -> bool {
-        let Some(SettledContacts { still, .. }) = settled else {
+        let Some(still) = still else {
             return false;
         };
         let is_proved = still.is_proved(&workspace.still_cache, max_distance, border_radii);
@@ -160,7 +161,7 @@ impl<'a> UpdateManifold<'a> {
         pair: &Pair<'_, B>,
         cso: &Cso<'_, Hull, B>,
         max_distance: f64,
-        settled: Option<&SettledContacts>,
+        (last, still): (&mut Option<LastContacts>, Option<&Still>),
         workspace: &mut Workspace,
         cost: &mut Cost,
     ) -> Result<Stage, Unsupported> {
@@ -179,7 +180,7 @@ impl<'a> UpdateManifold<'a> {
             pos12: self.pos12,
             scratch: &mut workspace.clip,
         };
-        let mut sink = ManifoldSink::new(&mut self.manifold, pair, frame, contacts, settled);
+        let mut sink = ManifoldSink::new(&mut self.manifold, pair, frame, contacts, last, still);
         let stage = query.run_into(Full, &mut sink).ok_or(Unsupported)?;
         let (apart_by, stage) = (sink.still_apart(stage, cso), sink.stage(stage));
         sink.store_held(&mut workspace.still_cache);
