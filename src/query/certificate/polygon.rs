@@ -114,6 +114,7 @@ fn least_of(four: f32x4) -> f32 {
 #[inline]
 fn four_by_four(corner: impl Fn(usize) -> Vec3, count: usize, mut call: impl FnMut([Vec3; 5])) {
     let wrapped = |i: usize| corner(if i < count { i } else { i - count });
+    // perf: `step_by` divides.
     let mut i = 0;
     while i < count {
         let ends = [
