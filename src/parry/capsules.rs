@@ -30,7 +30,7 @@ pub(crate) fn update_capsules(
         let p2 = pose.point_to_2(p2).as_vec3();
         TrackedContact::new(p1.as_vec3(), p2, id, id, contact.distance as Real)
     };
-    manifold.replace_by_ids(&contacts.in_places.map(|contact| contact.map(tracked)));
+    manifold.replace_by_ids(contacts.in_places.map(|contact| contact.map(tracked)));
     Ok(())
 }
 

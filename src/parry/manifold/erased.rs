@@ -66,15 +66,15 @@ impl<'a> ErasedManifold<'a> {
         }
     }
 
-    /// Replaces the first contacts. The new ones inherit the data of the old ones.
+    /// Replaces the contacts. The new ones inherit the data of the old ones.
     #[inline]
     pub(super) fn replace(&mut self, points: &ManifoldPoints) {
         self.points.replace(points);
         self.is_empty = points.count == 0;
     }
 
-    /// Replaces the contacts with up to four new ones, which inherit the data of old ones with the same ids.
-    pub fn replace_by_ids(&mut self, points: &[Option<TrackedContact<()>>]) {
+    /// Replaces the contacts. The new ones inherit the data of old ones with the same ids.
+    pub fn replace_by_ids(&mut self, points: [Option<TrackedContact<()>>; 3]) {
         self.points.replace_by_ids(points);
         self.is_empty = points.iter().all(Option::is_none);
     }
@@ -109,19 +109,14 @@ pub(super) trait ErasedPoints {
 
     fn replace(&mut self, points: &ManifoldPoints);
 
-    fn replace_by_ids(&mut self, points: &[Option<TrackedContact<()>>]);
+    fn replace_by_ids(&mut self, points: [Option<TrackedContact<()>>; 3]);
 }
 
 impl<C: Default + Copy> ErasedPoints for Vec<TrackedContact<C>> {
     fn deepest(&self) -> Option<usize> {
-        let (first, others) = self.split_first()?;
-        let (mut deepest, mut least) = (0, first.dist);
-        for (i, other) in others.iter().enumerate() {
-            if other.dist < least {
-                (deepest, least) = (i + 1, other.dist);
-            }
-        }
-        Some(deepest)
+        let contacts = self.iter().enumerate();
+        let deeper = contacts.reduce(|a, b| if b.1.dist < a.1.dist { b } else { a });
+        deeper.map(|(i, _)| i)
     }
 
     fn distance(&self, contact: usize) -> Option<f32> {
@@ -169,7 +164,7 @@ impl<C: Default + Copy> ErasedPoints for Vec<TrackedContact<C>> {
         replace(self, points);
     }
 
-    fn replace_by_ids(&mut self, points: &[Option<TrackedContact<()>>]) {
+    fn replace_by_ids(&mut self, points: [Option<TrackedContact<()>>; 3]) {
         replace_by_ids(self, points);
     }
 }

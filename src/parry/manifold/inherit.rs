@@ -1,7 +1,5 @@
 //! The points of a manifold, and the data that they inherit from the previous frame.
 
-use std::array;
-
 use glam::Vec3;
 use parry3d::math::Real;
 use parry3d::query::TrackedContact;
@@ -35,32 +33,27 @@ pub(super) fn replace<C: Default + Copy>(
     tracked.extend((0..count).map(|i| new_points.tracked(i, inheritance[matches[i]])));
 }
 
-/// Replaces the contacts with up to four new ones, which inherit the data of old ones with the same ids.
+/// Replaces the contacts. The new ones inherit the data of old ones with the same ids.
 pub(super) fn replace_by_ids<C: Default + Copy>(
     tracked: &mut Vec<TrackedContact<C>>,
-    new_points: &[Option<TrackedContact<()>>],
+    new_points: [Option<TrackedContact<()>>; 3],
 ) {
-    debug_assert!(new_points.len() <= MAX_POINTS, "{}", new_points.len());
-    let data = array::from_fn::<C, MAX_POINTS, _>(|i| {
-        let new = new_points.get(i).copied().flatten();
-        let new = new.map(|new| [new.fid1, new.fid2]);
-        let old = tracked.iter().find(|old| new == Some([old.fid1, old.fid2]));
-        old.map_or_else(C::default, |old| old.data)
-    });
-    let with_data = |(new, data): (&Option<TrackedContact<()>>, C)| {
-        let new = new.as_ref()?;
-        Some(TrackedContact {
+    let with_data = |new: TrackedContact<()>| {
+        let is_same = |old: &&TrackedContact<C>| [old.fid1, old.fid2] == [new.fid1, new.fid2];
+        let old = tracked.iter().find(is_same);
+        TrackedContact {
             local_p1: new.local_p1,
             local_p2: new.local_p2,
             dist: new.dist,
             fid1: new.fid1,
             fid2: new.fid2,
-            data,
-        })
+            data: old.map_or_else(C::default, |old| old.data),
+        }
     };
+    let new_points = new_points.map(|new| new.map(with_data));
     // Reuses the memory of the points, so that a pair at rest allocates nothing.
     tracked.clear();
-    tracked.extend(new_points.iter().zip(data).filter_map(with_data));
+    tracked.extend(new_points.into_iter().flatten());
 }
 
 /// Positions and features of contacts in the manifold's order of the shapes, coordinate by coordinate. Unused
