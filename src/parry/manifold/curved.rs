@@ -11,14 +11,13 @@ use super::update::UpdateManifold;
 use crate::curved::{self, CurvedAnswer, CurvedQuery, Hint, Patch, SurfacePieces};
 use crate::manifold::Contacts;
 use crate::parry::constraints::{ConstrainedPair, Constraints};
-use crate::parry::order::PairOrder;
 use crate::parry::pair::{Pair, valid_pose};
 use crate::parry::still_cache::StillPair;
 use crate::parry::workspace::Workspace;
 use crate::query::{Feature, LastContacts, PairMemory, Proximity};
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, FaceId, VertexId};
-use crate::tolerance::{DEPTH_GAP, MIN_DIRECTED_DISTANCE, UNCORRECTED};
+use crate::tolerance::{DEPTH_GAP, UNCORRECTED};
 use crate::tuning::ABSURD_DEPTH;
 
 impl UpdateManifold<'_> {
@@ -31,14 +30,12 @@ impl UpdateManifold<'_> {
         let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
         let borders = pair.border_radii[0] + pair.border_radii[1];
-        let touching = MIN_DIRECTED_DISTANCE * (cso.size() + borders);
-        let max_distance = f64::from(self.prediction) + touching;
+        let max_distance = f64::from(self.prediction) + pair.touching(cso.size());
         let (mut last, mut still) = (None, None);
-        self.read_settled(pair, &pose, (&mut last, &mut still), |rotation, key| {
-            StillPair::of(&cso, rotation, key)
-        });
-        let reach = max_distance + borders;
-        if self.hold_if_proved(pair.border_radii, still.as_ref(), reach, workspace) {
+        let contacts = (&mut last, &mut still);
+        let still_pair = |rotation, key| StillPair::of(&cso, rotation, key);
+        let reach = (&pose, max_distance + borders);
+        if self.hold_if_proved(pair, reach, contacts, &workspace.still_cache, still_pair) {
             return Ok(());
         }
         self.query_curved(pair, &cso, max_distance, (last, still.as_ref()), workspace)
@@ -80,7 +77,6 @@ impl UpdateManifold<'_> {
             } => {
                 let near = Near {
                     cso,
-                    order: pair.order,
                     border_radii: pair.border_radii,
                     least: signed_distance - borders,
                     normal,
@@ -88,7 +84,8 @@ impl UpdateManifold<'_> {
                     max_distance,
                     last: last.as_ref(),
                 };
-                let is_kept = self.update_contacts(&near, still, workspace);
+                let constraints = (self.constraints, self.pos12);
+                let is_kept = near.update_contacts(constraints, &mut manifold, still, workspace);
                 if is_kept && stage == Stage::Feature {
                     stage = Stage::Kept;
                 }
@@ -96,29 +93,6 @@ impl UpdateManifold<'_> {
         }
         self.stats.record(stage, &cost);
         Ok(())
-    }
-
-    /// Returns whether the contacts stayed where they were.
-    fn update_contacts<A: SurfacePieces, B: SurfacePieces>(
-        &mut self,
-        near: &Near<'_, '_, A, B>,
-        still: Option<&Still>,
-        workspace: &mut Workspace,
-    ) -> bool {
-        if let Some(still) = still.filter(|still| still.shows(near.least)) {
-            self.manifold.hold(still);
-            let core_distance = near.least + near.border_radii[0] + near.border_radii[1];
-            still.store(&mut workspace.still_cache, core_distance);
-            return true;
-        }
-        let patch = &mut workspace.curved.patch;
-        let frame = AxisFrame::of(near.cso);
-        let mut manifold = KernelManifold::with_borders(&mut self.manifold, near.order, frame);
-        if let [Constraints::None, Constraints::None] = self.constraints {
-            return near.update(&mut manifold, patch);
-        }
-        near.update_constrained((self.constraints, self.pos12), &mut manifold, patch);
-        false
     }
 }
 
@@ -141,7 +115,6 @@ impl KernelManifold<'_, '_> {
 /// Shapes that are near each other.
 struct Near<'a, 'c, A, B> {
     cso: &'a Cso<'c, A, B>,
-    order: PairOrder,
     border_radii: [f64; 2],
     /// The signed distance with the borders.
     least: f64,
@@ -160,6 +133,28 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
             on_2: self.on_1 + self.normal * self.least,
             features: [Feature::Face(FaceId::default()); 2],
         }
+    }
+
+    /// Leaves the contacts as they are, keeps their places, or chooses new ones. Returns whether they stayed.
+    fn update_contacts(
+        &self,
+        constraints: (&[Constraints<'_>; 2], &Pose),
+        manifold: &mut KernelManifold<'_, '_>,
+        still: Option<&Still>,
+        workspace: &mut Workspace,
+    ) -> bool {
+        if let Some(still) = still.filter(|still| still.shows(self.least)) {
+            manifold.manifold.hold(still);
+            let core_distance = self.least + self.border_radii[0] + self.border_radii[1];
+            still.store(&mut workspace.still_cache, core_distance);
+            return true;
+        }
+        let patch = &mut workspace.curved.patch;
+        if let [Constraints::None, Constraints::None] = constraints.0 {
+            return self.update(manifold, patch);
+        }
+        self.update_constrained(constraints, manifold, patch);
+        false
     }
 
     /// Keeps the contacts where they are, or chooses new ones. Returns whether they stayed.
@@ -189,18 +184,19 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         patch: &mut Patch,
     ) {
         let normals = Normals::of(&self.proximity(), self.cso.pose);
+        let order = manifold.order;
         let pair = ConstrainedPair {
             cso: self.cso,
-            order: self.order,
+            order,
             constraints: *constraints,
             pos12,
             max_distance: self.max_distance + self.border_radii[0] + self.border_radii[1],
         };
-        let Some(found) = pair.correct(self.order.to_caller(normals.rounded)) else {
+        let Some(found) = pair.correct(order.to_caller(normals.rounded)) else {
             self.set_axis(manifold);
             return;
         };
-        let corrected = self.order.to_kernel(found.normals);
+        let corrected = order.to_kernel(found.normals);
         if corrected[0].abs_diff_eq(normals.rounded[0], UNCORRECTED) {
             self.update(manifold, patch);
         } else if let Some(contacts) = self.along(corrected, patch) {

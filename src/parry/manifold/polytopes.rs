@@ -13,8 +13,8 @@ use crate::support::{Cso, Polytope};
 use crate::tolerance::UNCORRECTED;
 use crate::tuning::ABSURD_DEPTH;
 
-pub(super) struct PolytopeContacts<'a, 'c, B> {
-    pub cso: &'a Cso<'c, Hull, B>,
+pub(super) struct PolytopeContacts<'a, B> {
+    pub cso: &'a Cso<'a, Hull, B>,
     pub max_distance: f64,
     /// In the caller's order, as `pos12`.
     pub constraints: &'a [Constraints<'a>; 2],
@@ -22,7 +22,7 @@ pub(super) struct PolytopeContacts<'a, 'c, B> {
     pub scratch: &'a mut ClipScratch,
 }
 
-impl<B: Polytope> PolytopeContacts<'_, '_, B> {
+impl<B: Polytope> PolytopeContacts<'_, B> {
     /// Writes the contacts, or leaves the `last` ones where they are. Returns whether it left them.
     #[inline(always)]
     pub fn update_contacts(

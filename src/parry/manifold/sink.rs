@@ -17,7 +17,7 @@ pub(super) struct ManifoldSink<'a, 'm, B> {
     manifold: &'a mut ErasedManifold<'m>,
     pair: &'a Pair<'a, B>,
     frame: AxisFrame<'a>,
-    contacts: PolytopeContacts<'a, 'a, B>,
+    contacts: PolytopeContacts<'a, B>,
     /// The contacts of the manifold. They are read when they are first needed.
     last: &'a mut Option<LastContacts>,
     /// The same, if they may stay as they are.
@@ -36,7 +36,7 @@ impl<'a, 'm, B: Polytope> ManifoldSink<'a, 'm, B> {
         manifold: &'a mut ErasedManifold<'m>,
         pair: &'a Pair<'a, B>,
         frame: AxisFrame<'a>,
-        contacts: PolytopeContacts<'a, 'a, B>,
+        contacts: PolytopeContacts<'a, B>,
         last: &'a mut Option<LastContacts>,
         still: Option<&'a Still>,
     ) -> Self {

@@ -17,7 +17,7 @@ use crate::parry::constraints::Constraints;
 use crate::parry::convert::HalfSpace;
 use crate::parry::half_space as plane;
 use crate::parry::pair::{Pair, PairVisitor, valid_pose};
-use crate::parry::still_cache::StillPair;
+use crate::parry::still_cache::{StillCache, StillPair};
 use crate::parry::workspace::Workspace;
 use crate::pose::RelativePose;
 use crate::query::{Full, LastContacts, Query};
@@ -54,10 +54,10 @@ impl PairVisitor for UpdateManifold<'_> {
         let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
         let (mut last, mut still) = (None, None);
-        self.read_settled(pair, &pose, (&mut last, &mut still), |rotation, key| {
-            StillPair::of(&cso, rotation, key)
-        });
-        if self.hold_if_proved(pair.border_radii, still.as_ref(), max_distance, workspace) {
+        let contacts = (&mut last, &mut still);
+        let still_pair = |rotation, key| StillPair::of(&cso, rotation, key);
+        let reach = (&pose, max_distance);
+        if self.hold_if_proved(pair, reach, contacts, &workspace.still_cache, still_pair) {
             return Ok(());
         }
         let mut cost = Cost::default();
@@ -81,10 +81,10 @@ impl PairVisitor for UpdateManifold<'_> {
         let pose = pair.pose(valid_pose(self.pos12)?);
         let max_distance = pair.core_distance(self.prediction, pair.hull.radius());
         let (mut last, mut still) = (None, None);
-        self.read_settled(pair, &pose, (&mut last, &mut still), |rotation, key| {
-            plane::still_pair(pair, &pose, rotation, key)
-        });
-        if self.hold_if_proved(pair.border_radii, still.as_ref(), max_distance, workspace) {
+        let contacts = (&mut last, &mut still);
+        let still_pair = |rotation, key| plane::still_pair(pair, &pose, rotation, key);
+        let reach = (&pose, max_distance);
+        if self.hold_if_proved(pair, reach, contacts, &workspace.still_cache, still_pair) {
             return Ok(());
         }
         let mut update = HalfSpaceUpdate {
@@ -114,16 +114,19 @@ impl PairVisitor for UpdateManifold<'_> {
 }
 
 impl<'a> UpdateManifold<'a> {
-    /// Reads the contacts of the manifold, if they may stay as they are: into `last`, and `still` unless they left their
-    /// places. Return values would be copied even where there are none.
+    /// Only measures the contacts of a pair at rest anew, if that is proved to be enough. Returns whether it is.
+    ///
+    /// If contacts may stay as they are, it reads them into `last`, and into `still` unless they left their places. Return
+    /// values would be copied even where there are none.
     #[inline]
-    pub(super) fn read_settled<B, A>(
+    pub(super) fn hold_if_proved<B, A>(
         &mut self,
         pair: &Pair<'_, B, A>,
-        pose: &RelativePose,
+        (pose, max_distance): (&RelativePose, f64),
         (last, still): (&mut Option<LastContacts>, &mut Option<Still>),
+        still_cache: &StillCache,
         still_pair: impl FnOnce(Quat, u64) -> Option<StillPair>,
-    ) {
+    ) -> bool {
         // Corrected normals need not be those of the query.
         if matches!(self.constraints, [Constraints::None, Constraints::None])
             && is_settled(&self.manifold, pair.order, pose)
@@ -132,21 +135,10 @@ impl<'a> UpdateManifold<'a> {
             let manifold = KernelManifold::new(&mut self.manifold, pair, AxisFrame::First);
             Still::read(&manifold, pose, still_pair, last, still);
         }
-    }
-
-    /// Only measures the contacts of a pair at rest anew, if that is proved to be enough. Returns whether it is.
-    #[inline]
-    pub(super) fn hold_if_proved(
-        &mut self,
-        border_radii: [f64; 2],
-        still: Option<&Still>,
-        max_distance: f64,
-        workspace: &Workspace,
-    ) -> bool {
         let Some(still) = still else {
             return false;
         };
-        let is_proved = still.is_proved(&workspace.still_cache, max_distance, border_radii);
+        let is_proved = still.is_proved(still_cache, max_distance, pair.border_radii);
         if is_proved {
             self.manifold.hold(still);
             self.stats.record_free(Stage::Still);
