@@ -8,6 +8,7 @@
 //! the query is always kept, first in the list, so the manifold's deepest point is the query's answer.
 
 mod beside;
+mod border;
 pub(crate) mod capsules;
 mod clip;
 mod clip_vertices;

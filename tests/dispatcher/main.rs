@@ -35,6 +35,7 @@ mod parry_regressions;
 mod patches;
 mod recording;
 mod round_pairs;
+mod rounded_contacts;
 mod scene_queries;
 mod sizes;
 mod still;

@@ -7,6 +7,7 @@ use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch, Contacts};
+use crate::map_pair::map_pair;
 use crate::parry::constraints::{ConstrainedPair, Constraints, Corrected};
 use crate::query::{self, LastContacts, Proximity};
 use crate::support::{Cso, Polytope};
@@ -43,7 +44,11 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
         }
         let is_kept = manifold.keep_contacts(last, near, &normals, self.cso.min_radius());
         if !is_kept {
-            let contacts = manifold::contacts(self.cso, near, self.max_distance, self.scratch);
+            let mut contacts = manifold::contacts(self.cso, near, self.max_distance, self.scratch);
+            if manifold.border_radii != [0.0; 2] && contacts.len > 1 {
+                let (least, borders) = (near.signed_distance, manifold.border_radii);
+                contacts.fit_to_borders(self.cso, near.features, normals.exact, borders, least);
+            }
             manifold.set_contacts(normals.rounded, &contacts);
         }
         is_kept
@@ -80,7 +85,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
         };
         let contacts = contacts.and_then(|contacts| self.uncovered(&pair, near, contacts));
         match contacts {
-            Some((normals, contacts)) => manifold.set_contacts(normals, &contacts),
+            Some((normals, contacts)) => write_corrected(cso, manifold, near, normals, contacts),
             // There is no contact, but the next query has a place to start from.
             None => manifold.set_axis(near.normal, query::vertices(cso, near.features)),
         }
@@ -136,4 +141,20 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
         }
         (chosen.1.len > 0).then_some(chosen)
     }
+}
+
+/// Writes contacts along normals that are not the query's.
+fn write_corrected<B: Polytope>(
+    cso: &Cso<'_, Hull, B>,
+    manifold: &mut KernelManifold<'_, '_>,
+    near: &Proximity,
+    normals: [Vec3; 2],
+    mut contacts: Contacts,
+) {
+    let borders = manifold.border_radii;
+    if borders != [0.0; 2] {
+        let along = map_pair(normals, |normal| normal.as_dvec3());
+        contacts.fit_to_borders(cso, near.features, along, borders, f64::NEG_INFINITY);
+    }
+    manifold.set_contacts(normals, &contacts);
 }

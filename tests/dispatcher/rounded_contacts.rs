@@ -1,0 +1,137 @@
+//! Contacts of rounded shapes, the witness and those beside it: their points lie on the rounded surfaces.
+
+use glam::DVec3;
+use isa_gjk::IsaGjkDispatcher;
+use parry3d::math::{Rotation, Vector};
+use parry3d::query::details::NormalConstraints;
+use parry3d::shape::SharedShape;
+use testkit::generate::Rng;
+use testkit::memory::{Manifold, UpdateManifolds, cold_manifold};
+use testkit::oracle::signed_distance;
+use testkit::pose::ExactPose;
+use testkit::rounded::{self, Rounded};
+
+/// Of the larger shape's diameter.
+const OFF_SURFACE: f64 = 1.0e-6;
+
+/// How far a point is from the rounded surface. It is never inside the core.
+fn off_surface(shape: &Rounded, point: DVec3) -> f64 {
+    (shape.core.distance_to_surface(point) - shape.border).abs()
+}
+
+fn scale(shape: &Rounded) -> f64 {
+    shape.core.diameter() + 2.0 * shape.border
+}
+
+#[test]
+fn points_lie_on_both_rounded_surfaces() {
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut rng = Rng::new(5);
+    let (mut beside, mut worst) = (0, 0.0_f64);
+    for _ in 0..12 {
+        let hulls = rounded::all(&mut rng, 1.0);
+        let others = rounded::all(&mut rng, 1.0);
+        for hull in &hulls[..2] {
+            for other in others
+                .iter()
+                .filter(|other| hull.border + other.border > 0.0)
+            {
+                for _ in 0..12 {
+                    let pose = touching(&mut rng, [hull, other]);
+                    let shapes = [&hull.shape, &other.shape];
+                    let manifold = cold_manifold(&dispatcher, &pose.to_f32(), shapes, 0.1);
+                    let manifold = manifold.expect("supported");
+                    let scale = scale(hull).max(scale(other));
+                    for point in &manifold.points {
+                        let on_1 = off_surface(hull, point.local_p1.as_dvec3());
+                        let on_2 = off_surface(other, point.local_p2.as_dvec3());
+                        let off = on_1.max(on_2) / scale;
+                        worst = worst.max(off);
+                        assert!(
+                            off <= OFF_SURFACE,
+                            "{} and {}: {point:?} is {on_1}, {on_2} off at {pose:?}",
+                            hull.name,
+                            other.name
+                        );
+                    }
+                    beside += manifold.points.len().saturating_sub(1);
+                }
+            }
+        }
+    }
+    println!("{beside} contacts beside the witness, at most {worst:.1e} off");
+    assert!(beside > 1000, "only {beside} contacts beside the witness");
+}
+
+/// The second shape a little above the first, or in it.
+fn touching(rng: &mut Rng, [a, b]: [&Rounded; 2]) -> ExactPose {
+    let mut pose = rng.pose(0.0);
+    let (apart, gap) = (rng.direction(), rng.range(-0.02, 0.06));
+    let distance = |away: f64| {
+        let pose = ExactPose {
+            translation: apart * away,
+            ..pose
+        };
+        signed_distance(&a.core, &b.core, &pose) - a.border - b.border
+    };
+    let (mut near, mut far) = (0.0, 4.0);
+    for _ in 0..40 {
+        let middle = 0.5 * (near + far);
+        if distance(middle) < gap {
+            near = middle;
+        } else {
+            far = middle;
+        }
+    }
+    pose.translation = apart * near;
+    pose
+}
+
+/// Allows one normal only.
+struct Only(Vector);
+
+impl NormalConstraints for Only {
+    fn project_local_normal_mut(&self, normal: &mut Vector) -> bool {
+        *normal = self.0;
+        true
+    }
+}
+
+#[test]
+fn points_along_corrected_normals_lie_on_the_rounded_surface() {
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut rng = Rng::new(6);
+    let ground = SharedShape::cuboid(4.0, 1.0, 4.0);
+    let mut beside = 0;
+    for _ in 0..400 {
+        let shapes = rounded::all(&mut rng, 1.0);
+        let round = &shapes[1];
+        let rotation = rng.rotation();
+        let lowest = -round.core.support(rotation.inverse() * DVec3::NEG_Y);
+        let pose = ExactPose {
+            rotation,
+            translation: DVec3::Y * (1.0 - lowest + round.border + rng.range(-0.02, 0.04)),
+        };
+        let leaning = Rotation::from_scaled_axis(rng.direction().as_vec3() * 0.1) * Vector::Y;
+        let constraints: [Option<&dyn NormalConstraints>; 2] = [Some(&Only(leaning)), None];
+        let mut manifold = Manifold::new();
+        dispatcher
+            .update_manifold(
+                &pose.to_f32(),
+                [&*ground, &*round.shape],
+                constraints,
+                0.2,
+                &mut manifold,
+            )
+            .expect("supported");
+        for point in &manifold.points {
+            let off = off_surface(round, point.local_p2.as_dvec3());
+            assert!(
+                off <= OFF_SURFACE * scale(round),
+                "{point:?} is {off} off at {pose:?}"
+            );
+        }
+        beside += manifold.points.len().saturating_sub(1);
+    }
+    assert!(beside > 100, "only {beside} contacts beside the deepest");
+}
