@@ -119,6 +119,8 @@ fn settled(scene: Scene) -> Option<Settled> {
         Scene::Trimesh | Scene::Heightfield | Scene::Rubble => (0.1, -0.1),
         // Four millimetres thick, and pressed into each other by a few.
         Scene::Plates | Scene::Needles => (2.0, 0.002),
+        // Lying, much thinner than long. Crossed, they overlap by some millimetres.
+        Scene::Pencils | Scene::Rings => (0.4, 0.01),
         Scene::Breach => (0.1, 0.05),
         // Held in the air, 0.2 m above the floor, by fingers of 2 cm.
         Scene::Grippers | Scene::ShakenGrippers => (0.3, 0.18),

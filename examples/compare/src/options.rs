@@ -20,7 +20,7 @@ const SECONDS_UNTIL_ASLEEP: u32 = 12;
 pub struct Options {
     /// What is in the world: drum, pile, stack, coins, wall, dominoes, spin, top, rolling, asleep,
     /// cuboids, balls, mixed, compound, trimesh, heightfield, rocks, stones, dice, pebbles, cubes,
-    /// plates, needles, breach, rubble, reshaped or bursts
+    /// plates, needles, pencils, rings, breach, rubble, reshaped or bursts
     #[arg(long, default_value_t = Scene::Drum)]
     pub scene: Scene,
 
@@ -29,7 +29,8 @@ pub struct Options {
     #[arg(long)]
     shape: Option<Shape>,
 
-    /// Sides of a prism [default: half of the vertices; 64 for coins and tops]
+    /// Sides of a prism, or of a ring, which has as many parts [default: half of the vertices; 64 for
+    /// coins, tops and rings]
     #[arg(long, value_parser = value_parser!(u32).range(3..=10_000))]
     sides: Option<u32>,
 
@@ -38,7 +39,8 @@ pub struct Options {
     bodies: Option<u32>,
 
     /// The largest extent of the largest body, in metres [default: 5 to 40 cm for rocks, stones,
-    /// dice, pebbles, cubes, plates, needles, breach, rubble and bursts; about a metre elsewhere]
+    /// dice, pebbles, cubes, plates, needles, pencils, rings, breach, rubble and bursts; about a metre
+    /// elsewhere]
     #[arg(long, value_parser = positive::<Real>)]
     size: Option<Real>,
 
@@ -256,7 +258,7 @@ impl Options {
             Shape::Random => HullSource::Random { vertices },
             Shape::Prism => HullSource::Prism {
                 sides: self.sides.unwrap_or(match self.scene {
-                    Scene::Coins | Scene::Top => 64,
+                    Scene::Coins | Scene::Top | Scene::Rings => 64,
                     _ => (vertices / 2).max(3),
                 }),
             },

@@ -6,7 +6,7 @@ use rapier3d::prelude::*;
 use super::containers::WALL;
 use super::filler::{Filler, GAP, reach, square_cell};
 use super::world::World;
-use super::{Scene, SceneParams, containers, families, hulls, standing};
+use super::{HullSource, Scene, SceneParams, containers, families, hulls, standing};
 
 /// Distance between the centres of neighbours at the start, in bounding diameters.
 const SPACING: Real = 1.1;
@@ -68,6 +68,8 @@ pub fn fill(
         | Scene::Cubes
         | Scene::Plates
         | Scene::Needles
+        | Scene::Pencils
+        | Scene::Rings
         | Scene::Reshaped
         | Scene::Bursts => filler.pile(),
     }
@@ -116,11 +118,14 @@ fn shapes(
         Scene::Wall | Scene::Breach => vec![hulls::cuboid(standing::BRICK)?],
         Scene::Dominoes => vec![hulls::cuboid(standing::DOMINO)?],
         Scene::Coins | Scene::Top => {
-            let super::HullSource::Prism { sides } = params.hulls else {
-                return Err("coins are prisms".to_owned());
-            };
-            vec![hulls::prism(sides, hulls::RADIUS, COIN_HALF_HEIGHT)?]
+            vec![hulls::prism(
+                sides(params)?,
+                hulls::RADIUS,
+                COIN_HALF_HEIGHT,
+            )?]
         }
+        Scene::Pencils => vec![families::pencil(sides(params)?)?],
+        Scene::Rings => vec![families::ring(sides(params)?)?],
         Scene::Stack => hulls::upright(&params.hulls, count, random)?,
         Scene::Drum
         | Scene::Pile
@@ -135,6 +140,13 @@ fn shapes(
         | Scene::Reshaped
         | Scene::Bursts => hulls::make(&params.hulls, count, random)?,
     })
+}
+
+fn sides(params: &SceneParams) -> Result<u32, String> {
+    match params.hulls {
+        HullSource::Prism { sides } => Ok(sides),
+        _ => Err("this scene makes prisms".to_owned()),
+    }
 }
 
 /// Hull `i` and the next one, overlapping like the two ends of a dumb-bell.

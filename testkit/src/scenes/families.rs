@@ -9,6 +9,10 @@ use super::hulls::{self, RADIUS};
 
 /// Thickness of plates and needles over their length.
 const THIN: Real = 0.01;
+/// Length of pencils over their width.
+const LONG: Real = 4.0;
+/// How wide and high a ring's material is, in radii of the ring.
+const MATERIAL: Real = 0.25;
 
 /// Hulls of 8 to 20 points on a sphere.
 pub fn rocks(count: u32, random: &mut Rand32) -> Result<Vec<SharedShape>, String> {
@@ -110,4 +114,28 @@ pub fn plate() -> Result<SharedShape, String> {
 /// A square rod.
 pub fn needle() -> Result<SharedShape, String> {
     hulls::cuboid(RADIUS * Vector::new(1.0, THIN, THIN))
+}
+
+/// A prism that is long and thin.
+pub fn pencil(sides: u32) -> Result<SharedShape, String> {
+    hulls::prism(sides, RADIUS / LONG, RADIUS)
+}
+
+/// A ring with its axis along y, one wedge for each side.
+pub fn ring(sides: u32) -> Result<SharedShape, String> {
+    let half_height = 0.5 * MATERIAL * RADIUS;
+    let wedge = |side: u32| {
+        let corners = [side, side + 1].into_iter().flat_map(|corner| {
+            let (sin, cos) = (TAU * corner as Real / sides as Real).sin_cos();
+            [RADIUS, RADIUS * (1.0 - MATERIAL)]
+                .into_iter()
+                .flat_map(move |radius| {
+                    [-half_height, half_height].map(|y| Vector::new(radius * cos, y, radius * sin))
+                })
+        });
+        let wedge = hulls::hull(&corners.collect::<Vec<_>>(), "a wedge of a ring")?;
+        Ok((Pose::IDENTITY, wedge))
+    };
+    let wedges: Result<Vec<_>, String> = (0..sides).map(wedge).collect();
+    Ok(SharedShape::compound(wedges?))
 }

@@ -74,6 +74,10 @@ pub enum Scene {
     Plates,
     /// A pile of rods a hundredth as thick as long.
     Needles,
+    /// A pile of prisms four times as long as wide.
+    Pencils,
+    /// A pile of rings, each taken apart into as many wedges as it has sides.
+    Rings,
     /// A brick wall that a ball is thrown at.
     Breach,
     /// Hulls dropped on a heap of boxes that is one compound.
@@ -90,7 +94,7 @@ pub enum Scene {
 
 impl Scene {
     /// Every scene.
-    pub const ALL: [Self; 29] = [
+    pub const ALL: [Self; 31] = [
         Self::Drum,
         Self::Pile,
         Self::Stack,
@@ -114,6 +118,8 @@ impl Scene {
         Self::Cubes,
         Self::Plates,
         Self::Needles,
+        Self::Pencils,
+        Self::Rings,
         Self::Breach,
         Self::Rubble,
         Self::Grippers,
@@ -148,6 +154,8 @@ impl Scene {
             Self::Cubes => "cubes",
             Self::Plates => "plates",
             Self::Needles => "needles",
+            Self::Pencils => "pencils",
+            Self::Rings => "rings",
             Self::Breach => "breach",
             Self::Rubble => "rubble",
             Self::Grippers => "grippers",
@@ -169,9 +177,11 @@ impl Scene {
             | Self::Cubes
             | Self::Plates
             | Self::Needles
+            | Self::Pencils
             | Self::Rubble
             | Self::Bursts => 300,
             Self::Reshaped => 100,
+            Self::Rings => 32,
             Self::Spin | Self::Top => 16,
             Self::Dominoes | Self::Rolling | Self::Grippers | Self::ShakenGrippers => 64,
             Self::Stack | Self::Wall => 128,
@@ -192,10 +202,10 @@ impl Scene {
     /// The largest extent of a body in metres, of scenes that scale their shapes.
     pub const fn default_size(self) -> Option<f32> {
         match self {
-            Self::Rocks | Self::Stones | Self::Dice | Self::Rubble => Some(0.12),
+            Self::Rocks | Self::Stones | Self::Dice | Self::Pencils | Self::Rubble => Some(0.12),
             Self::Pebbles => Some(0.05),
             Self::Cubes | Self::Grippers | Self::ShakenGrippers => Some(0.1),
-            Self::Plates | Self::Needles => Some(0.4),
+            Self::Plates | Self::Needles | Self::Rings => Some(0.4),
             Self::Breach => Some(0.25),
             Self::Bursts => Some(0.2),
             _ => None,
@@ -214,7 +224,7 @@ impl Scene {
             | Self::Plates
             | Self::Needles => Hulls::Own,
             Self::Stack => Hulls::Upright,
-            Self::Coins | Self::Spin | Self::Top => Hulls::Prisms,
+            Self::Coins | Self::Spin | Self::Top | Self::Pencils | Self::Rings => Hulls::Prisms,
             Self::Wall | Self::Dominoes | Self::Breach => Hulls::Boxes,
             Self::Drum
             | Self::Pile
