@@ -62,11 +62,12 @@ impl<S: Polytope> Border<'_, S> {
         }
         let mut rows = points.map(f32x4::to_array);
         let point = Vec3::from(rows.map(|row| row[lane])).as_dvec3();
-        let heights = features.map(|feature| {
-            let face = feature.face(self.core, self.normal);
-            self.height_over(face, point)
-        });
-        let lift = heights[0].max(heights[1]) - self.width;
+        let [face, own] = features.map(|feature| feature.face(self.core, self.normal));
+        let mut height = self.height_over(face, point);
+        if own != face {
+            height = height.max(self.height_over(own, point));
+        }
+        let lift = height - self.width;
         if lift <= 0.0 {
             return 0.0;
         }
