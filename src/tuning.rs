@@ -135,6 +135,12 @@ pub(crate) const ROCKING_RISE: f64 = 1e-3;
 /// rapier merges them.
 pub(crate) const ONE_PLANE_COS: f32 = 0.996;
 
+/// A corner this many times as high above the deepest one as it is far from the other contacts is the last to be
+/// chosen: the body would have to turn by eleven degrees before it touches there. With 0, bodies that lean on an edge
+/// trade its second corner for a far one whenever the deepest corner changes, and heaps of rounded prisms of six sides
+/// rest after 227 frames in place of 108. With 15, rounded prisms of twelve sides rest late.
+pub(crate) const CORNER_RISE: f32 = 5.0;
+
 /// A contact this many times as high above the deepest one as it is far from the others is no better than
 /// none: the body would have to turn by four degrees before it touches there. Heaps of bodies of two
 /// hulls rest with 5 as well as with 15, and never with 0.

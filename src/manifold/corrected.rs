@@ -48,7 +48,8 @@ pub fn contacts_along<A: Polytope, B: Polytope>(
     let mut selection = Selection::default();
     if let Some(deepest) = summary.deepest {
         selection.push(summary.deepest);
-        selection.push_all(candidates.spread_out(corners, corners.at(deepest), same));
+        let from = (corners.at(deepest), candidates.distance(deepest));
+        selection.push_all(candidates.spread_out(corners, from, same));
     }
     let witness = (least, features);
     Some(patch.contacts(polygons, witness, (clipper, candidates), &selection))

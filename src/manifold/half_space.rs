@@ -162,6 +162,7 @@ fn push_spread(
     let range = f32::NEG_INFINITY..=max_distance as f32;
     let same = SAME_POINT * shape.radius() as f32;
     candidates.set(corners, of_row, range, same);
-    selection.push_all(candidates.spread_out(corners, Vec2::ZERO, same));
+    let from = (Vec2::ZERO, proximity.signed_distance as f32);
+    selection.push_all(candidates.spread_out(corners, from, same));
     selection.fill_up(candidates);
 }

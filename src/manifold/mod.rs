@@ -98,7 +98,8 @@ fn choose(
     let mut selection = Selection::default();
     selection.push(first);
     let first_at = first.map_or(Vec2::ZERO, |corner| corners.at(corner));
-    selection.push_all(candidates.spread_out(corners, first_at, same));
+    let from = (first_at, least as f32);
+    selection.push_all(candidates.spread_out(corners, from, same));
     selection.fill_up(candidates);
     selection
 }

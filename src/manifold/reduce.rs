@@ -8,6 +8,7 @@ use super::clip_vertices::ClipVertices;
 use super::contacts::MAX_POINTS;
 use crate::arg_max::ArgMax4;
 use crate::simd::{LANES, f32x4, first_lanes, lane_mask, u32x4};
+use crate::tuning::CORNER_RISE;
 
 /// Corners to choose from, by their numbers.
 #[derive(Clone, Debug, Default)]
@@ -124,54 +125,64 @@ impl Candidates {
         Some(corner)
     }
 
-    /// Corners that, with the contact at `first`, span a large area: the farthest from it, the
-    /// farthest from the line through both, and the farthest on its other side. None of them is
-    /// nearer than `same` to another.
+    /// Corners that, with the contact at `first`, span a large area: the farthest from it, the farthest from the
+    /// line through both, and the farthest on its other side. None of them is nearer than `same` to another. Low
+    /// corners come first: each counts as nearer by [`CORNER_RISE`] times its height above `level`.
     #[inline(always)]
     pub fn spread_out(
         &self,
         corners: &ClipVertices,
-        first: Vec2,
+        (first, level): (Vec2, f32),
         same: f32,
     ) -> [Option<usize>; MAX_POINTS - 1] {
-        let Some(far) = self.arg_max(first, same * same, |x, y| x * x + y * y) else {
+        let reach = Reach { first, level, same };
+        let Some(far) = self.farthest(&reach, 1.0, |x, y| (x * x + y * y).sqrt()) else {
             return [None; MAX_POINTS - 1];
         };
         let line = corners.at(far) - first;
-        // The areas over the line are heights times its length.
-        let least = same * line.length();
-        let [mut left, mut right] = [ArgMax4::new(least), ArgMax4::new(least)];
-        for (row, four) in self.fours().enumerate() {
-            let area = (four.y - first.y) * line.x - (four.x - first.x) * line.y;
-            left.update_where(four.near, area, ids(row));
-            right.update_where(four.near, -area, ids(row));
-        }
-        match (corner(left), corner(right)) {
+        // The areas over the line are distances times its length.
+        let length = line.length();
+        let left = self.farthest(&reach, length, |x, y| y * line.x - x * line.y);
+        let right = self.farthest(&reach, length, |x, y| x * line.y - y * line.x);
+        match (left, right) {
             // If the patch is on one side of the line, the last corner adds most area to the triangle.
             (Some(side), None) | (None, Some(side)) => {
                 let apex = corners.at(side) - first;
-                let third = self.arg_max(first, least, |x, y| added_area(x, y, line, apex));
+                let third = self.farthest(&reach, length, |x, y| added_area(x, y, line, apex));
                 [Some(far), Some(side), third]
             }
             (left, right) => [Some(far), left, right],
         }
     }
 
-    /// The corner with the greatest measure above `least`. Its position is relative to `first`.
+    /// The corner with the greatest measure, which is its distance from something times `length`. Its position is
+    /// relative to the first contact.
     #[inline(always)]
-    fn arg_max(
+    fn farthest(
         &self,
-        first: Vec2,
-        least: f32,
+        reach: &Reach,
+        length: f32,
         measure: impl Fn(f32x4, f32x4) -> f32x4,
     ) -> Option<usize> {
-        let mut greatest = ArgMax4::new(least);
+        let mut greatest = ArgMax4::new(f32::NEG_INFINITY);
+        let (least, per_height) = (reach.same * length, CORNER_RISE * length);
         for (row, four) in self.fours().enumerate() {
-            let measures = measure(four.x - first.x, four.y - first.y);
-            greatest.update_where(four.near, measures, ids(row));
+            let far = measure(four.x - reach.first.x, four.y - reach.first.y);
+            let rise = (four.distance - reach.level).fast_max(f32x4::ZERO);
+            let is_other = four.near & far.simd_gt(f32x4::splat(least));
+            greatest.update_where(is_other, far - rise * per_height, ids(row));
         }
         corner(greatest)
     }
+}
+
+/// From where the other corners are seen.
+struct Reach {
+    /// The first contact, and the distance of the faces there.
+    first: Vec2,
+    level: f32,
+    /// Corners that are nearer than this count as one.
+    same: f32,
 }
 
 /// Twice the area that points add to the triangle of the origin, `a` and `b`, beyond one of its two edges at

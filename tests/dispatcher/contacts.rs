@@ -439,3 +439,43 @@ fn contacts_of_pressed_stones_lie_on_both() {
     }
     assert!(with_four > 300, "only {with_four}");
 }
+
+/// A prism leans on an edge of its flat side. Whichever end of the edge is deeper, both ends bear it: other corners
+/// are far above.
+#[test]
+fn both_ends_of_the_edge_that_bears_a_leaning_prism_are_contacts() {
+    for sides in [5, 6, 8, 12] {
+        let prism = prism(sides, 0.0);
+        let half_side = TAU / (2 * sides) as Real;
+        for lean in [0.1, 0.15, 0.2] {
+            for tip in [-4e-3, 4e-3] {
+                // The edge between the corners 0 and 1 is lowest.
+                let to_edge = Vector::new(half_side.cos(), 0.0, half_side.sin());
+                let axis = to_edge.cross(Vector::Y);
+                let rotation = Rotation::from_axis_angle(to_edge, tip)
+                    * Rotation::from_axis_angle(axis, -lean);
+                let corner = |i: u32| {
+                    let (sin, cos) = (TAU * i as Real / sides as Real).sin_cos();
+                    rotation * Vector::new(cos, -HALF_HEIGHT, sin)
+                };
+                let ends = [corner(0), corner(1)];
+                let lowest = ends[0].y.min(ends[1].y);
+                let place = Vector::new(0.0, -1e-3 - lowest, 0.0);
+                let mut manifolds = Vec::new();
+                let slab = SharedShape::cuboid(10.0, 1.0, 10.0);
+                let pose = Pose::translation(0.0, 1.0, 0.0) * Pose::from_parts(place, rotation);
+                update_pair(&mut manifolds, [&slab, &prism], pose, 2.0);
+                for end in ends {
+                    let at = Pose::translation(0.0, 1.0, 0.0) * (place + end);
+                    let is_there =
+                        |p: &TrackedContact<u32>| (pose * p.local_p2).distance(at) < 1e-3;
+                    assert!(
+                        manifolds[0].points.iter().any(is_there),
+                        "{sides} sides, leaning by {lean}, tipped by {tip}: no contact at {at} in {:?}",
+                        manifolds[0].points
+                    );
+                }
+            }
+        }
+    }
+}

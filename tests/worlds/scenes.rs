@@ -121,7 +121,8 @@ fn settled(scene: Scene) -> Option<Settled> {
         Scene::Plates | Scene::Needles => (2.0, 0.002),
         // Lying, much thinner than long. Crossed, they overlap by some millimetres.
         Scene::Pencils | Scene::Rings => (0.4, 0.01),
-        Scene::Breach => (0.1, 0.05),
+        // A brick or two are wedged between others.
+        Scene::Breach => (0.2, 0.05),
         // Held in the air, 0.2 m above the floor, by fingers of 2 cm.
         Scene::Grippers | Scene::ShakenGrippers => (0.3, 0.18),
         // A quarter of what a body measures. Small stones, a few centimetres thick, sink into each other by
