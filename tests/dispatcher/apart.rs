@@ -93,6 +93,35 @@ fn a_contact_is_found_in_the_frame_in_which_it_begins() {
     assert!(found > 100, "{found} contacts");
 }
 
+/// The pose turns the second shape, whichever of the two the kernels take first.
+#[test]
+fn a_large_hull_that_turns_meets_what_is_beside_it() {
+    let hull = hulls::cuboid(Vector::splat(1.0)).expect("a box");
+    let small = [
+        SharedShape::ball(0.01),
+        SharedShape::cuboid(0.01, 0.01, 0.01),
+        SharedShape::capsule(Vector::ZERO, Vector::X * 0.01, 0.01),
+        hulls::cuboid(Vector::splat(0.01)).expect("a box"),
+    ];
+    let dispatcher = IsaGjkDispatcher::default();
+    for other in &small {
+        for is_first in [true, false] {
+            let mut memory = Memory::default();
+            let mut touches = |angle: Real| {
+                let of_hull = Pose::from_parts(Vector::Y * -1.05, Rotation::from_rotation_z(angle));
+                let (shapes, pose) = match is_first {
+                    true => ([other, &hull], of_hull),
+                    false => ([&hull, other], of_hull.inverse()),
+                };
+                let manifold = memory.update(&dispatcher, &pose, shapes, PREDICTION);
+                !manifold.expect("supported").points.is_empty()
+            };
+            assert!([0.0; 3].map(&mut touches).iter().all(|touches| !touches));
+            assert!(touches(0.3), "first: {is_first}");
+        }
+    }
+}
+
 /// What was proved of a shape says nothing about another in its place, nor about one with a wider border, nor
 /// about a longer prediction.
 #[test]

@@ -47,13 +47,19 @@ impl<'a> AxisFrame<'a> {
         }
     }
 
-    /// The greatest distance of a point of the other shape from the centre of its rotation.
-    pub fn lever<A: Support, B: Support>(self, cso: &Cso<'_, A, B>) -> f64 {
-        match self {
-            Self::First => cso.shape_2.center().length() + cso.shape_2.radius(),
-            Self::Second(pose) => {
-                (cso.shape_1.center() - pose.translation()).length() + cso.shape_1.radius()
+    /// The greatest distance of a point of the other shape from the centre of its rotation: the origin of the caller's
+    /// second shape, which the caller's pose turns.
+    pub fn lever<A: Support, B: Support>(self, cso: &Cso<'_, A, B>, order: PairOrder) -> f64 {
+        let (first, second) = (cso.shape_1, cso.shape_2);
+        match (self, order) {
+            (Self::First, PairOrder::Given) => second.center().length() + second.radius(),
+            (Self::First, PairOrder::Reversed) => {
+                cso.pose.point_to_1(second.center()).length() + second.radius()
             }
+            (Self::Second(pose), PairOrder::Given) => {
+                (first.center() - pose.translation()).length() + first.radius()
+            }
+            (Self::Second(_), PairOrder::Reversed) => first.center().length() + first.radius(),
         }
     }
 

@@ -178,7 +178,8 @@ impl<'a> UpdateManifold<'a> {
         sink.store_held(&mut workspace.still_cache);
         if let (Some(separation), Some(apart)) = (apart_by, self.apart_pair(pair)) {
             let proofs = &mut workspace.apart_cache;
-            proofs.store(&apart, separation, [cso.size(), frame.lever(cso)]);
+            let lever = frame.lever(cso, pair.order);
+            proofs.store(&apart, separation, [cso.size(), lever]);
         }
         Ok(stage)
     }
