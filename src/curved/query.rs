@@ -105,11 +105,12 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
         {
             return Some((answer, Stage::Feature));
         }
-        let is_deep = matches!(hint, Hint::Contact(_, true));
         let best = match self.stationary(&at) {
             ControlFlow::Break(answer) => return Some((answer, Stage::Feature)),
             ControlFlow::Continue(best) => best,
         };
+        // Faces of a polytope that does not contain the origin say nothing about how far it is outside.
+        let is_deep = best.distance <= 0.0 && matches!(hint, Hint::Contact(_, true));
         if !is_deep && let Some(found) = self.by_gjk(&at, start) {
             return Some(found);
         }

@@ -122,6 +122,37 @@ fn rounded_pairs_are_right() {
     check(0.07, 332);
 }
 
+/// Cores that overlapped in the last frame may be far apart within their borders in the next.
+#[test]
+fn cores_that_jump_apart_are_right() {
+    let mut rng = Rng::new(333);
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut jumps = 0;
+    for _ in 0..12 {
+        for first in curved(&mut rng, 0.0) {
+            for second in partners(&mut rng, 2.0) {
+                let bodies = [&second, &first];
+                let size = first.diameter().min(second.diameter());
+                let shapes = bodies.map(|body| &body.shape);
+                for meeting in [Meeting::Random, Meeting::Parallel, Meeting::Flat] {
+                    let deep = Meeting::Concentric.pose(&mut rng, bodies, 0.0);
+                    let touching = meeting.pose(&mut rng, bodies, -1e-3 * size);
+                    let (Some(deep), Some(touching)) = (deep, touching) else {
+                        continue;
+                    };
+                    let mut memory = Memory::default();
+                    memory.update(&dispatcher, &deep.to_f32(), shapes, 0.0);
+                    let found = memory.update(&dispatcher, &touching.to_f32(), shapes, 0.0);
+                    let faults = Judge::new(bodies, touching).manifold(found, 0.0);
+                    assert!(faults.are_within(PROMISE), "{}: {faults:?}", second.name);
+                    jumps += 1;
+                }
+            }
+        }
+    }
+    assert!(jumps > 200, "only {jumps} jumps");
+}
+
 /// Checks every tenth answer along a trajectory, beside the contacts that stay. Returns the dispatcher.
 fn follow(bodies: [&Body; 2], gap: f32) -> IsaGjkDispatcher {
     let shapes = bodies.map(|body| body.shape.clone());
