@@ -35,12 +35,41 @@ impl Contacts {
             normal: normals[1],
             width: widths[1],
         };
+        self.lift_all(least, |contacts, lane| {
+            let [own_1, own_2] = contacts.features[lane];
+            let lift_1 = border_1.lift([features[0], own_1], &mut contacts.on_1, lane);
+            let lift_2 = border_2.lift([features[1], own_2], &mut contacts.on_2, lane);
+            lift_1 + lift_2
+        });
+    }
+
+    /// The same for the first shape over a half-space.
+    #[cold]
+    #[inline(never)]
+    pub fn fit_to_border(
+        &mut self,
+        core: &impl Polytope,
+        feature: Feature,
+        normal: DVec3,
+        width: f64,
+        least: f64,
+    ) {
+        let border = Border {
+            core,
+            normal,
+            width,
+        };
+        self.lift_all(least, |contacts, lane| {
+            let [own, _] = contacts.features[lane];
+            border.lift([feature, own], &mut contacts.on_1, lane)
+        });
+    }
+
+    /// Moves the points of each contact by `lift`, which returns how much less their distance is.
+    fn lift_all(&mut self, least: f64, lift: impl Fn(&mut Self, usize) -> f64) {
         let mut distances = self.distance.to_array();
         for (lane, distance) in distances.iter_mut().enumerate().take(self.len) {
-            let [own_1, own_2] = self.features[lane];
-            let lift_1 = border_1.lift([features[0], own_1], &mut self.on_1, lane);
-            let lift_2 = border_2.lift([features[1], own_2], &mut self.on_2, lane);
-            *distance = (f64::from(*distance) - (lift_1 + lift_2)).max(least) as f32;
+            *distance = (f64::from(*distance) - lift(self, lane)).max(least) as f32;
         }
         self.distance = f32x4::new(distances);
     }

@@ -87,6 +87,37 @@ fn touching(rng: &mut Rng, [a, b]: [&Rounded; 2]) -> ExactPose {
     pose
 }
 
+#[test]
+fn points_over_a_half_space_lie_on_the_rounded_surface() {
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut rng = Rng::new(7);
+    let ground = SharedShape::halfspace(Vector::Y);
+    let mut beside = 0;
+    for _ in 0..400 {
+        let shapes = rounded::all(&mut rng, 1.0);
+        let round = &shapes[1];
+        let rotation = rng.rotation();
+        let lowest = -round.core.support(rotation.inverse() * DVec3::NEG_Y);
+        let pose = ExactPose {
+            rotation,
+            translation: DVec3::Y * (round.border - lowest + rng.range(-0.02, 0.04)),
+        };
+        let shapes = [&ground, &round.shape];
+        let manifold = cold_manifold(&dispatcher, &pose.to_f32(), shapes, 0.2).expect("supported");
+        for point in &manifold.points {
+            let off = off_surface(round, point.local_p2.as_dvec3());
+            assert!(
+                off <= OFF_SURFACE * scale(round),
+                "{point:?} is {off} off at {pose:?}"
+            );
+            let height = pose.apply(point.local_p2.as_dvec3()).y;
+            assert!((height - f64::from(point.dist)).abs() < OFF_SURFACE * scale(round));
+        }
+        beside += manifold.points.len().saturating_sub(1);
+    }
+    assert!(beside > 400, "only {beside} contacts beside the deepest");
+}
+
 /// Allows one normal only.
 struct Only(Vector);
 

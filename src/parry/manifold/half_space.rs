@@ -101,8 +101,12 @@ impl HalfSpaceUpdate<'_, '_> {
         let is_kept =
             (self.manifold).keep_contacts(self.last.as_ref(), near, &normals, hull.radius());
         if !is_kept {
-            let contacts =
+            let mut contacts =
                 manifold::half_space_contacts(hull, self.pose, near, self.max_distance, scratch);
+            let (border, least) = (self.pair.border_radii[0], near.signed_distance);
+            if border != 0.0 && contacts.len > 1 {
+                contacts.fit_to_border(hull, near.features[0], near.normal, border, least);
+            }
             self.manifold.set_contacts(normals.rounded, &contacts);
         }
         is_kept
