@@ -39,6 +39,19 @@ impl DVec3x4 {
         x * dir.x + y * dir.y + z * dir.z
     }
 
+    /// The products lane by lane.
+    #[inline(always)]
+    pub fn dot_each(self, other: Self) -> f64x4 {
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        x * a + y * b + z * c
+    }
+
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self {
+        let ([x, y, z], [a, b, c]) = (self.0, other.0);
+        Self([y * c - b * z, z * a - c * x, x * b - a * y])
+    }
+
     #[inline(always)]
     pub fn length_squared(self) -> f64x4 {
         let [x, y, z] = self.0;

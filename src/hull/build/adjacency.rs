@@ -1,8 +1,6 @@
 //! The surface of a small hull as an adjacency matrix: for each two vertices, the triangle left of the edge from one
 //! to the other. Nothing is sorted or searched for, and the neighbours of a vertex are the bits of a word.
 
-use std::mem;
-
 use crate::hull::graph::FaceCorner;
 use crate::hull::lists::Rows;
 use crate::hull::scan;
@@ -15,64 +13,60 @@ pub(super) const TRIANGLES: usize = 2 * VERTICES;
 
 /// A triangulated surface, and memory for the next one.
 pub(super) struct AdjacencyMatrix {
-    /// Each from its lowest corner, in the order of their corners.
-    pub triangles: Vec<[u32; 3]>,
-    /// The face of each triangle: itself, or a polygon.
-    face_of: [u8; TRIANGLES],
-    /// The corners of all faces, after an entry that belongs to no face.
-    corners: Vec<FaceCorner>,
+    triangles: Box<[[u32; 3]; TRIANGLES]>,
+    count: usize,
     /// The neighbours of each vertex: a bit for each.
     neighbors: [u64; VERTICES],
     /// The edges from each vertex to its neighbours. Other entries may be left over from an earlier surface.
     edges: Box<[[MatrixEdge; VERTICES]; VERTICES]>,
+    merged: MergedTriangles,
 }
 
 /// A directed edge.
 #[derive(Clone, Copy, Default)]
+#[repr(align(4))]
 struct MatrixEdge {
     /// The triangle left of it, and the corner of this triangle opposite to it.
     triangle: u8,
     third: u8,
-    /// The index of its start among the corners, or [`DIAGONAL`].
-    start: u16,
+    /// Its place among the neighbours of its start.
+    slot: u8,
 }
 
-/// The start of an edge across a face.
-const DIAGONAL: u16 = 0;
+/// The faces of triangles that are merged into polygons.
+struct MergedTriangles {
+    /// The face of each triangle.
+    face_of: [u8; TRIANGLES],
+    /// The polygon of each triangle, or [`NONE`].
+    polygon_of: [u8; TRIANGLES],
+    /// The first triangle of each face.
+    first_of: Vec<u8>,
+}
 
 /// No polygon, or no face.
 const NONE: u8 = u8::MAX;
-
-const NO_FACE: FaceCorner = FaceCorner { vertex: 0, slot: 0 };
 
 /// An edge on the way around the vertex that it leaves.
 #[derive(Clone, Copy)]
 pub(super) struct Spoke {
     /// The next neighbour clockwise.
-    pub next: u32,
-    /// The triangle to its left, and the one to its right, which is between the two neighbours.
-    left: u8,
-    right: u8,
-    /// The indices of its start and its end among the corners.
-    starts: [u16; 2],
-}
-
-impl Spoke {
-    /// The triangles on its sides.
-    #[inline]
-    pub fn sides(&self) -> [usize; 2] {
-        [index(self.left), index(self.right)]
-    }
+    pub next: u8,
+    /// The triangle between the two neighbours, which is right of the edge.
+    pub right: u8,
 }
 
 impl Default for AdjacencyMatrix {
     fn default() -> Self {
         Self {
-            triangles: Vec::new(),
-            face_of: [0; _],
-            corners: Vec::new(),
+            triangles: Box::new([[0; 3]; _]),
+            count: 0,
             neighbors: [0; _],
             edges: Box::new([[MatrixEdge::default(); _]; _]),
+            merged: MergedTriangles {
+                face_of: [0; _],
+                polygon_of: [NONE; _],
+                first_of: Vec::with_capacity(TRIANGLES),
+            },
         }
     }
 }
@@ -87,7 +81,7 @@ impl AdjacencyMatrix {
         }
         self.add(count, triangles)?;
         self.number_triangles(count);
-        (self.triangles.len() == triangles.len()).then_some(())
+        (self.count == triangles.len()).then_some(())
     }
 
     /// Adds the edges of all triangles.
@@ -106,149 +100,154 @@ impl AdjacencyMatrix {
         }
         let (used, unused) = self.neighbors.split_at(count);
         let edges: u32 = used.iter().map(|row| row.count_ones()).sum();
-        // No index is too large, and no two edges are the same.
+        // No index is too large, no vertex is without edges, and no two edges are the same.
         let are_good = bits >> VERTICES.ilog2() == 0
+            && used.iter().all(|&row| row != 0)
             && unused.iter().all(|&row| row == 0)
             && Ok(edges) == u32::try_from(3 * triangles.len());
         are_good.then_some(())
     }
 
+    /// Lists the triangles, each from its lowest corner, in the order of their corners.
     fn number_triangles(&mut self, count: usize) {
-        self.triangles.clear();
-        self.corners.clear();
-        self.corners.push(NO_FACE);
+        let mut number = 0;
         for a in (0..).take(count) {
             let mut higher = self.neighbors[row(a)] & !0 << a;
             while higher != 0 {
                 let b = higher.trailing_zeros();
                 higher &= higher - 1;
                 let c = u32::from(self.edges[row(a)][row(b)].third);
-                if c > a {
-                    self.number([a, b, c]);
-                }
+                // Whether this is the lowest corner is not predictable: otherwise the next triangle takes its place.
+                self.triangles[number % TRIANGLES] = [a, b, c];
+                number += usize::from(c > a);
+            }
+        }
+        self.count = number;
+        for (number, &[a, b, c]) in (0..).zip(&self.triangles[..number]) {
+            for (from, to) in [(a, b), (b, c), (c, a)] {
+                self.edges[row(from)][row(to)].triangle = number;
             }
         }
     }
 
-    /// Adds the next triangle, as a face of its own.
+    /// The triangles, each from its lowest corner, in the order of their corners.
     #[inline]
-    fn number(&mut self, corners: [u32; 3]) {
-        let [a, b, c] = corners;
-        let triangle = self.triangles.len() as u8;
-        for (from, to) in [(a, b), (b, c), (c, a)] {
-            self.edges[row(from)][row(to)].triangle = triangle;
-            self.add_corner(from, to);
-        }
-        self.face_of[index(triangle)] = triangle;
-        self.triangles.push(corners);
-    }
-
-    /// Adds the corner of a face from which an edge starts.
-    #[inline]
-    fn add_corner(&mut self, from: u32, to: u32) {
-        // There are fewer corners than a u16 can count.
-        let start = u16::try_from(self.corners.len()).unwrap_or(DIAGONAL);
-        self.edges[row(from)][row(to)].start = start;
-        self.corners.push(FaceCorner::new(from, 0));
+    pub fn triangles(&self) -> &[[u32; 3]] {
+        &self.triangles[..self.count]
     }
 
     /// Merges the triangle strips of polygons into these. Calls `add` for each face, with a triangle of it and
     /// the number of its polygon.
     pub fn merge(&mut self, polygons: &Rows<u32>, mut add: impl FnMut(usize, Option<usize>)) {
-        let mut polygon_of = [NONE; TRIANGLES];
-        self.mark_polygons(polygons, &mut polygon_of);
-        let mut faces = [NONE; TRIANGLES];
-        self.corners.truncate(1);
-        let mut count = 0;
-        let triangles = mem::take(&mut self.triangles);
-        for (triangle, (&corners, &polygon)) in triangles.iter().zip(&polygon_of).enumerate() {
-            let polygon = (polygon != NONE).then_some(index(polygon));
-            if let Some(polygon) = polygon
-                && faces[polygon] != NONE
-            {
-                self.face_of[triangle] = faces[polygon];
-                continue;
-            }
-            self.face_of[triangle] = count;
-            add(triangle, polygon);
-            if let Some(polygon) = polygon {
-                faces[polygon] = count;
-                self.add_corners(polygons.row(polygon));
-            } else {
-                self.add_corners(&corners);
-            }
-            count += 1;
-        }
-        self.triangles = triangles;
-    }
-
-    /// Finds the polygon of each triangle. All edges of these become diagonals.
-    fn mark_polygons(&mut self, polygons: &Rows<u32>, polygon_of: &mut [u8; TRIANGLES]) {
+        self.merged.polygon_of = [NONE; _];
         // Each has a triangle of its own, so these are fewer than a u8 can count.
         for (number, polygon) in (0..NONE).zip(polygons.rows()) {
             for (from, to) in sides(polygon) {
                 let edge = self.edges[row(from)][row(to)];
-                polygon_of[index(edge.triangle)] = number;
+                self.merged.polygon_of[index(edge.triangle)] = number;
             }
         }
-        for (triangle, &polygon) in self.triangles.iter().zip(&*polygon_of) {
-            if polygon != NONE {
-                for (from, to) in sides(triangle) {
-                    self.edges[row(from)][row(to)].start = DIAGONAL;
-                }
+        let mut faces = [NONE; TRIANGLES];
+        self.merged.first_of.clear();
+        for triangle in (0..).take(self.count) {
+            let polygon = self.merged.polygon_of(triangle);
+            if let Some(polygon) = polygon
+                && faces[polygon] != NONE
+            {
+                self.merged.face_of[index(triangle)] = faces[polygon];
+                continue;
             }
+            let face = self.merged.first_of.len() as u8;
+            self.merged.face_of[index(triangle)] = face;
+            add(index(triangle), polygon);
+            if let Some(polygon) = polygon {
+                faces[polygon] = face;
+            }
+            self.merged.first_of.push(triangle);
         }
     }
 
-    fn add_corners(&mut self, polygon: &[u32]) {
-        for (from, to) in sides(polygon) {
-            self.add_corner(from, to);
-        }
-    }
-
-    /// The lowest neighbour of a vertex, and how many there are.
+    /// The lowest neighbour of a vertex.
     #[inline]
-    pub fn neighbors(&self, vertex: u32) -> (u32, u32) {
-        let neighbors = self.neighbors[row(vertex)];
-        (neighbors.trailing_zeros(), neighbors.count_ones())
+    pub fn lowest_neighbor(&self, vertex: u8) -> u8 {
+        self.neighbors[row(vertex.into())].trailing_zeros() as u8
     }
 
     /// Whether there is an edge from one vertex to another.
     #[inline]
-    pub fn has(&self, from: u32, to: u32) -> bool {
-        self.neighbors[row(from)] >> row(to) & 1 == 1
+    pub fn has(&self, from: u8, to: u8) -> bool {
+        self.neighbors[row(from.into())] >> row(to.into()) & 1 == 1
     }
 
-    /// An edge, if its triangles are there.
+    /// The triangle left of an edge, if it is there.
     #[inline]
-    pub fn spoke(&self, vertex: u32, to: u32) -> Spoke {
-        let there = self.edges[row(vertex)][row(to)];
-        let back = self.edges[row(to)][row(vertex)];
+    pub fn left(&self, from: u8, to: u8) -> u8 {
+        self.edges[row(from.into())][row(to.into())].triangle
+    }
+
+    /// An edge, if its triangles are there, which has this slot among the neighbours of `vertex`.
+    #[inline]
+    pub fn spoke(&mut self, vertex: u8, to: u8, slot: u8) -> Spoke {
+        let [vertex, to] = [vertex, to].map(|v| row(v.into()));
+        self.edges[vertex][to].slot = slot;
+        let back = self.edges[to][vertex];
         Spoke {
-            next: back.third.into(),
-            left: there.triangle,
+            next: back.third,
             right: back.triangle,
-            starts: [there.start, back.start],
         }
     }
 
-    /// The face of a triangle.
+    /// The face of a triangle that [`merge`](Self::merge) found.
     #[inline]
-    pub fn face_of(&self, triangle: usize) -> u8 {
-        self.face_of[triangle % TRIANGLES]
+    pub fn merged_face_of(&self, triangle: u8) -> u8 {
+        self.merged.face_of[index(triangle)]
     }
 
-    /// Stores the slot of an edge: its place among the neighbours of its lower vertex.
-    #[inline]
-    pub fn set_slot(&mut self, spoke: &Spoke, slot: u16) {
-        for start in spoke.starts {
-            self.corners[usize::from(start)].slot = slot;
+    /// The corners of all triangles, if all slots are known.
+    pub fn corners(&self) -> Box<[FaceCorner]> {
+        let corners = self.triangles().iter().map(|&[a, b, c]| {
+            let (from_a, from_c) = (self.slot(a, b), self.slot(a, c));
+            [
+                FaceCorner::new(a, from_a),
+                self.corner(b, c),
+                FaceCorner::new(c, from_c),
+            ]
+        });
+        let corners: Vec<_> = corners.collect();
+        corners.into_flattened().into()
+    }
+
+    /// The corners of all faces, some of which are these polygons.
+    pub fn merged_corners(&self, polygons: &Rows<u32>) -> Box<[FaceCorner]> {
+        let mut corners = Vec::with_capacity(3 * self.count);
+        for &triangle in &self.merged.first_of {
+            let face = match self.merged.polygon_of(triangle) {
+                Some(polygon) => polygons.row(polygon),
+                None => &self.triangles[index(triangle)],
+            };
+            corners.extend(sides(face).map(|(from, to)| self.corner(from, to)));
         }
+        corners.into()
     }
 
-    /// The corners of all faces, in the order of the faces.
-    pub fn corners(&self) -> &[FaceCorner] {
-        &self.corners[1..]
+    /// The corner of a face from which an edge starts.
+    #[inline]
+    fn corner(&self, from: u32, to: u32) -> FaceCorner {
+        FaceCorner::new(from, self.slot(from.min(to), from.max(to)))
+    }
+
+    /// The slot of an edge at its lower vertex.
+    #[inline]
+    fn slot(&self, low: u32, high: u32) -> u16 {
+        self.edges[row(low)][row(high)].slot.into()
+    }
+}
+
+impl MergedTriangles {
+    #[inline]
+    fn polygon_of(&self, triangle: u8) -> Option<usize> {
+        let polygon = self.polygon_of[index(triangle)];
+        (polygon != NONE).then_some(index(polygon))
     }
 }
 
@@ -260,7 +259,7 @@ pub(super) fn row(vertex: u32) -> usize {
 
 /// The index of a triangle. The compiler knows it to be below [`TRIANGLES`].
 #[inline]
-fn index(triangle: u8) -> usize {
+pub(super) fn index(triangle: u8) -> usize {
     usize::from(triangle) % TRIANGLES
 }
 

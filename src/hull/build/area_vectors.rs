@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use crate::at::At;
+use crate::simd::{DVec3x4, LANES, f32x4, f64x4, widened};
 use crate::tolerance::MIN_TRIANGLE_HEIGHT;
 
 /// The area vectors of all triangles, and the volume inside the surface.
@@ -45,28 +46,95 @@ impl Volume {
         }
     }
 
-    /// Adds a triangle: a corner, the sides that leave it, and their cross product.
+    /// Adds the first `count` of four triangles: a corner of each, the sides that leave it, and their cross products.
     #[inline]
-    pub fn add(&mut self, a: DVec3, [ab, ac]: [DVec3; 2], vector: DVec3) {
+    fn add(&mut self, a: DVec3x4, sides: [DVec3x4; 2], vectors: DVec3x4, count: usize) {
+        let [ab, ac] = sides;
         let from_origin = a - self.origin;
-        let inside = vector.dot(from_origin);
-        self.volume += inside;
-        self.moment += (from_origin * 3.0 + (ab + ac)) * inside;
+        let inside = vectors.dot_each(from_origin);
+        let moment = (from_origin * f64x4::splat(3.0) + (ab + ac)) * inside;
+        let inside = inside.to_array();
+        let [x, y, z] = moment.0.map(f64x4::to_array);
+        // One after the other: what the sum rounds to must not depend on the lane of a triangle.
+        for lane in 0..count.min(LANES) {
+            self.volume += inside[lane];
+            self.moment += DVec3::new(x[lane], y[lane], z[lane]);
+        }
+    }
+}
+
+/// The area vectors of four triangles.
+pub(super) struct FourAreaVectors {
+    pub vectors: DVec3x4,
+    pub areas: f64x4,
+    pub normals: [f32x4; 3],
+    pub highest: f64x4,
+    pub lowest: f64x4,
+}
+
+impl FourAreaVectors {
+    /// Of up to four triangles, which are added to the volume. Other lanes repeat the first one.
+    #[inline]
+    pub fn measure(
+        triangles: &[[u32; 3]],
+        place: impl Fn(u32) -> DVec3,
+        inside: &mut Volume,
+    ) -> Self {
+        let corners = |corner: usize| {
+            let vertex = |lane: usize| triangles.get(lane).unwrap_or(&triangles[0])[corner];
+            DVec3x4::gather([0, 1, 2, 3].map(vertex), &place)
+        };
+        let a = corners(0);
+        let sides = [corners(1) - a, corners(2) - a];
+        let four = Self::new(a, sides);
+        inside.add(a, sides, four.vectors, triangles.len());
+        four
+    }
+
+    /// From a corner of each, and the sides that leave it.
+    #[inline]
+    fn new(a: DVec3x4, [ab, ac]: [DVec3x4; 2]) -> Self {
+        let vectors = ab.cross(ac);
+        let areas = vectors.length_squared().sqrt();
+        let normals = (vectors * (f64x4::splat(1.0) / areas)).to_f32x4();
+        let rounded = DVec3x4(normals.map(|row| widened(row.to_array())));
+        let at_a = rounded.dot_each(a);
+        let [at_b, at_c] = [ab, ac].map(|side| rounded.dot_each(side));
+        let zero = f64x4::ZERO;
+        Self {
+            vectors,
+            areas,
+            normals,
+            highest: at_a + zero.fast_max(at_b).fast_max(at_c),
+            lowest: at_a + zero.fast_min(at_b).fast_min(at_c),
+        }
+    }
+
+    /// One after the other.
+    fn each(&self) -> impl Iterator<Item = AreaVector> {
+        let [x, y, z] = self.vectors.0.map(f64x4::to_array);
+        let [nx, ny, nz] = self.normals.map(f32x4::to_array);
+        let [areas, highest, lowest] = [self.areas, self.highest, self.lowest].map(f64x4::to_array);
+        (0..LANES).map(move |lane| AreaVector {
+            vector: DVec3::new(x[lane], y[lane], z[lane]),
+            area: areas[lane],
+            normal: Vec3::new(nx[lane], ny[lane], nz[lane]),
+            highest: highest[lane],
+            lowest: lowest[lane],
+        })
     }
 }
 
 impl AreaVectors {
     pub fn new(points: &[DVec3], triangles: &[[u32; 3]]) -> Self {
         let mut inside = Volume::new(points[0]);
-        let measured = triangles.iter().map(|&[a, b, c]| {
-            let a = points.at(a);
-            let sides = [points.at(b) - a, points.at(c) - a];
-            let triangle = AreaVector::new(a, sides);
-            inside.add(a, sides, triangle.vector);
-            triangle
-        });
+        let mut measured = Vec::with_capacity(triangles.len());
+        for four in triangles.chunks(LANES) {
+            let areas = FourAreaVectors::measure(four, |v| points.at(v), &mut inside);
+            measured.extend(areas.each().take(four.len()));
+        }
         Self {
-            triangles: measured.collect(),
+            triangles: measured,
             inside,
         }
     }
@@ -87,29 +155,6 @@ impl AreaVectors {
 }
 
 impl AreaVector {
-    /// From a corner, and the sides that leave it.
-    #[inline]
-    pub fn new(a: DVec3, [ab, ac]: [DVec3; 2]) -> Self {
-        let vector = ab.cross(ac);
-        let area = vector.length();
-        let normal = (vector * (1.0 / area)).as_vec3();
-        let rounded = normal.as_dvec3();
-        let at_a = rounded.dot(a);
-        // No value is NaN where it matters, so the NaN checks of `f64::max` and `f64::min` are not needed.
-        let (mut highest, mut lowest) = (0.0, 0.0);
-        for height in [rounded.dot(ab), rounded.dot(ac)] {
-            highest = if height > highest { height } else { highest };
-            lowest = if height < lowest { height } else { lowest };
-        }
-        Self {
-            vector,
-            area,
-            normal,
-            highest: at_a + highest,
-            lowest: at_a + lowest,
-        }
-    }
-
     /// Whether the angle between the triangles is at most the one with this cosine.
     #[inline]
     pub fn is_within(&self, cosine: f64, other: &Self) -> bool {

@@ -25,6 +25,12 @@ impl GraphBuilder {
         }
     }
 
+    /// Adds the only block of the next vertex.
+    #[inline]
+    pub fn push_block(&mut self, block: NeighborBlock) {
+        self.blocks.push(block);
+    }
+
     /// Adds the neighbours of the next vertex, clockwise seen from outside.
     #[inline]
     pub fn push(&mut self, around: &[Neighbor]) {

@@ -5,36 +5,32 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
 
-use crate::hull::build::adjacency::{AdjacencyMatrix, TRIANGLES, VERTICES, row};
-use crate::hull::build::area_vectors::{AreaVector, Volume};
+use super::areas::Areas;
+use super::around::AroundVertices;
+
+use crate::hull::build::adjacency::{AdjacencyMatrix, TRIANGLES, VERTICES, index, row};
+use crate::hull::build::area_vectors::{FourAreaVectors, Volume};
 use crate::hull::build::face_plane::{is_flat, polygon_normal};
-use crate::hull::build::graph::Neighbor;
 use crate::hull::build::validate::{center_and_radius, met_by_ray, validate_finite};
 use crate::hull::faces::{FaceRecord, Faces};
 use crate::hull::lists::Rows;
 use crate::hull::scan::Scan;
 use crate::hull::{Hull, SupportSearch};
 use crate::ids::ShapeId;
+use crate::simd::{LANES, f32x4, f64x4};
 use crate::tolerance::MIN_EXTENT;
 
 /// Memory to work in. Its lists are longer than any index, so that indices need no checks.
 pub(super) struct SteepBuilder {
     pub matrix: AdjacencyMatrix,
     pub points: Box<[DVec3; VERTICES]>,
-    pub areas: Box<[Area; TRIANGLES]>,
+    pub areas: Areas,
     /// Of the faces, which are the triangles until some of them are merged.
     pub planes: Vec<FaceRecord>,
     /// Of the triangles that were merged.
     triangle_planes: Vec<FaceRecord>,
     pub has_polygons: bool,
-    pub around: Vec<Neighbor>,
-}
-
-/// Twice the area of a triangle, as a vector and its length.
-#[derive(Clone, Copy, Default)]
-pub(super) struct Area {
-    pub vector: DVec3,
-    pub length: f64,
+    pub around: AroundVertices,
 }
 
 impl Default for SteepBuilder {
@@ -42,11 +38,11 @@ impl Default for SteepBuilder {
         Self {
             matrix: AdjacencyMatrix::default(),
             points: Box::new([DVec3::ZERO; _]),
-            areas: Box::new([Area::default(); _]),
+            areas: Areas::default(),
             planes: Vec::with_capacity(TRIANGLES),
             triangle_planes: Vec::with_capacity(TRIANGLES),
             has_polygons: false,
-            around: Vec::with_capacity(VERTICES),
+            around: AroundVertices::default(),
         }
     }
 }
@@ -74,8 +70,13 @@ impl SteepBuilder {
             return None;
         }
         let graph = self.walk_around_all(points.len(), radius)?;
+        let corners = if self.has_polygons {
+            self.matrix.merged_corners(polygons)
+        } else {
+            self.matrix.corners()
+        };
         let count = self.planes.len();
-        self.planes.push(FaceRecord::end(self.matrix.corners()));
+        self.planes.push(FaceRecord::end(&corners));
         Some(Hull {
             search: SupportSearch::Scan(Scan::new(points, center, radius)?),
             points: points.into(),
@@ -83,7 +84,7 @@ impl SteepBuilder {
             faces: Faces {
                 count,
                 polygons: self.planes.as_slice().into(),
-                corners: self.matrix.corners().into(),
+                corners,
                 clusters: OnceLock::new(),
             },
             center,
@@ -97,29 +98,25 @@ impl SteepBuilder {
     fn measure(&mut self) -> (Volume, f64) {
         self.planes.clear();
         let mut inside = Volume::new(self.points[0]);
-        let (mut first, mut thickness) = (0, 0.0);
-        for (area, &[a, b, c]) in self.areas.iter_mut().zip(&self.matrix.triangles) {
-            let a = self.points[row(a)];
-            let sides = [self.points[row(b)] - a, self.points[row(c)] - a];
-            let triangle = AreaVector::new(a, sides);
-            inside.add(a, sides, triangle.vector);
-            let height = triangle.highest - triangle.lowest;
-            thickness = if height > thickness {
-                height
-            } else {
-                thickness
-            };
-            *area = Area {
-                vector: triangle.vector,
-                length: triangle.area,
-            };
-            self.planes.push(FaceRecord {
-                normal: triangle.normal,
-                first,
-                offset: triangle.highest,
-            });
-            first += 3;
+        let (mut first, mut thickness) = (0, f64x4::ZERO);
+        let points = &self.points;
+        for (number, triangles) in self.matrix.triangles().chunks(LANES).enumerate() {
+            let four = FourAreaVectors::measure(triangles, |v| points[row(v)], &mut inside);
+            let heights = four.highest - four.lowest;
+            thickness = heights.fast_max(thickness);
+            self.areas.set_four(number, &four);
+            let [x, y, z] = four.normals.map(f32x4::to_array);
+            let highest = four.highest.to_array();
+            for lane in 0..triangles.len().min(LANES) {
+                self.planes.push(FaceRecord {
+                    normal: Vec3::new(x[lane], y[lane], z[lane]),
+                    first,
+                    offset: highest[lane],
+                });
+                first += 3;
+            }
         }
+        let thickness = thickness.to_array().into_iter().fold(0.0, f64::max);
         (inside, thickness)
     }
 
@@ -157,11 +154,11 @@ impl SteepBuilder {
             planes.push(plane);
         });
         let faces_outward = |triangle: usize| {
-            let face = usize::from(self.matrix.face_of(triangle));
+            let face = index(self.matrix.merged_face_of(triangle as u8));
             let normal = self.planes[face].normal.as_dvec3();
-            self.areas[triangle].vector.dot(normal) > 0.0
+            self.areas.vector(triangle).dot(normal) > 0.0
         };
-        (0..self.matrix.triangles.len())
+        (0..self.matrix.triangles().len())
             .all(faces_outward)
             .then_some(thickness)
     }
@@ -173,6 +170,6 @@ impl SteepBuilder {
         let is_beneath =
             |plane: &FaceRecord| plane.offset - plane.normal.as_dvec3().dot(center) > least;
         self.planes.iter().all(is_beneath)
-            && met_by_ray(points, &self.matrix.triangles, center).count() == 1
+            && met_by_ray(points, self.matrix.triangles(), center).count() == 1
     }
 }

@@ -1,6 +1,8 @@
 //! Small hulls that bend clearly at every edge between two faces, such as debris. One walk around each vertex
 //! finds what a [`Surface`](super::surface::Surface) finds in many passes. The hulls are the same.
 
+mod areas;
+mod around;
 mod builder;
 #[cfg(test)]
 mod tests;
