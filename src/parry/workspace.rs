@@ -8,7 +8,6 @@ use crate::epa::{EpaScratch, PolytopeCache};
 use crate::manifold::ClipScratch;
 use crate::parry::apart_cache::ApartCache;
 use crate::parry::hull_cache::HullCache;
-use crate::parry::hull_cache::registry::PreparedHull;
 use crate::parry::seams_cache::SeamsCache;
 use crate::parry::still_cache::StillCache;
 
@@ -33,7 +32,6 @@ thread_local! {
 pub(crate) fn trim() {
     TRIMS.fetch_add(1, Ordering::Relaxed);
     ThreadWorkspace::with(|_| ());
-    PreparedHull::forget_unused();
 }
 
 impl ThreadWorkspace {

@@ -154,7 +154,6 @@ impl HullCache {
             .map(|(i, slot)| (slot.address, i))
             .collect();
         self.bytes = self.slots.iter().map(Slot::bytes).sum();
-        PreparedHull::forget_unused();
     }
 
     /// The hull of a polyhedron that is found at once. It may also be in the map.
@@ -204,6 +203,8 @@ impl HullCache {
         polyhedron: &ConvexPolyhedron,
         known: Option<usize>,
     ) -> usize {
+        // First, so that the new hull takes over its memory, which is in the processor's caches.
+        let place = known.map(|place| self.take_out(place));
         let slot = Slot::new(address, polyhedron);
         self.aging.prepared(slot.key(), slot.bytes());
         self.bytes += slot.bytes();
@@ -211,14 +212,25 @@ impl HullCache {
             // They are dropped at the next pair, since this one holds references.
             self.look_after = 1;
         }
-        if let Some(i) = known {
-            self.bytes -= self.slots[i].bytes();
-            self.slots[i] = slot;
-            return i;
-        }
         self.slots.push(slot);
-        self.entries.insert(address, self.slots.len() - 1);
-        self.slots.len() - 1
+        let last = self.slots.len() - 1;
+        match place {
+            Some(place) => {
+                self.slots.swap(place, last);
+                place
+            }
+            None => {
+                self.entries.insert(address, last);
+                last
+            }
+        }
+    }
+
+    /// Drops the hull in a place, in which the last one stays until another hull is there.
+    fn take_out(&mut self, place: usize) -> usize {
+        let old = self.slots.swap_remove(place);
+        self.bytes -= old.bytes();
+        place
     }
 
     /// The hull of a reference from [`find`](Self::find).

@@ -4,7 +4,8 @@
 //! and worlds that are simulated side by side have equal shapes. One prepared hull serves all of them: it is
 //! prepared once, and is in the processor's caches once.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
+use std::hash::BuildHasherDefault;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
 use glam::Vec3;
@@ -14,6 +15,7 @@ use crate::hull::Hull;
 use crate::hull::build::identity::{Diagonals, fingerprint, same_points};
 use crate::hull::build::polyhedron::hull_and_diagonals;
 use crate::parry::hull_cache::digest::Digest;
+use crate::parry::int_hash::IntMap;
 
 /// The prepared hull of a polyhedron. [`matches`](Self::matches) verifies whether it belongs to a given one.
 #[derive(Debug)]
@@ -53,16 +55,21 @@ impl PreparedHull {
     /// new one.
     pub fn get_or_build(polyhedron: &ConvexPolyhedron) -> Arc<Self> {
         let key = fingerprint(polyhedron);
-        let known = HullRegistry::with(|registry| registry.find(key, polyhedron));
+        let known = HullRegistry::with(|registry| registry.find(key));
+        if let Some(known) = known.filter(|known| known.matches(polyhedron)) {
+            return known;
+        }
         // Other threads do not wait until it is built. If several build the same, the first one wins.
-        known.unwrap_or_else(|| {
-            let new = Arc::new(Self::new(key, polyhedron));
-            HullRegistry::with(|registry| {
-                registry
-                    .find(key, polyhedron)
-                    .unwrap_or_else(|| registry.add(new))
-            })
-        })
+        let new = Arc::new(Self::new(key, polyhedron));
+        match HullRegistry::with(|registry| registry.find_or_add(&new)) {
+            Some(known) if known.matches(polyhedron) => known,
+            // Another polyhedron with the same fingerprint. Only one of them is shared.
+            Some(_) => {
+                HullRegistry::with(|registry| registry.replace(&new));
+                new
+            }
+            None => new,
+        }
     }
 
     fn new(key: u64, polyhedron: &ConvexPolyhedron) -> Self {
@@ -121,58 +128,60 @@ impl PreparedHull {
     pub fn bytes(&self) -> usize {
         self.bytes
     }
+}
 
-    /// Drops the hulls that no thread uses any more.
-    pub fn forget_unused() {
-        HullRegistry::with(HullRegistry::sweep);
+/// The registry forgets what nobody uses.
+impl Drop for PreparedHull {
+    fn drop(&mut self) {
+        HullRegistry::with(|registry| registry.forget(self.key));
     }
 }
 
-/// Prepared hulls in use by any thread, keyed by fingerprint. A thread looks a polyhedron up here only
-/// on first use.
-struct HullRegistry {
-    shared: BTreeMap<u64, Vec<Weak<PreparedHull>>>,
-    /// The number of fingerprints at which unused hulls are dropped.
-    sweep_at: usize,
-}
+/// Prepared hulls in use by any thread, by fingerprint; of several with the same one, the latest. A thread looks a
+/// polyhedron up here only on first use.
+struct HullRegistry(IntMap<u64, Weak<PreparedHull>>);
 
-static REGISTRY: Mutex<HullRegistry> = Mutex::new(HullRegistry {
-    shared: BTreeMap::new(),
-    sweep_at: 0,
-});
+/// The registry gives memory back when fewer than one of so many places are in use.
+const SPARSE: usize = 16;
+
+static REGISTRY: Mutex<HullRegistry> = Mutex::new(HullRegistry(HashMap::with_hasher(
+    BuildHasherDefault::new(),
+)));
 
 impl HullRegistry {
+    /// No hull may be dropped meanwhile, since that asks for the registry again.
     fn with<T>(work: impl FnOnce(&mut Self) -> T) -> T {
         // A panic elsewhere leaves this in a consistent state.
         work(&mut REGISTRY.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    fn find(&self, key: u64, polyhedron: &ConvexPolyhedron) -> Option<Arc<PreparedHull>> {
-        let mut alike = self.shared.get(&key)?.iter().filter_map(Weak::upgrade);
-        alike.find(|prepared| prepared.matches(polyhedron))
+    fn find(&self, key: u64) -> Option<Arc<PreparedHull>> {
+        self.0.get(&key)?.upgrade()
     }
 
-    fn add(&mut self, new: Arc<PreparedHull>) -> Arc<PreparedHull> {
-        if self.shared.len() >= self.sweep_at {
-            self.sweep();
+    /// Adds a hull, unless there is one with its fingerprint, which is returned.
+    fn find_or_add(&mut self, new: &Arc<PreparedHull>) -> Option<Arc<PreparedHull>> {
+        let known = self.find(new.key);
+        if known.is_none() {
+            self.replace(new);
         }
-        let alike = self.shared.entry(new.key).or_default();
-        alike.retain(is_used);
-        alike.push(Arc::downgrade(&new));
-        new
+        known
     }
 
-    fn sweep(&mut self) {
-        self.shared.retain(|_, alike| {
-            alike.retain(is_used);
-            !alike.is_empty()
-        });
-        self.sweep_at = 2 * self.shared.len() + 1;
+    fn replace(&mut self, new: &Arc<PreparedHull>) {
+        self.0.insert(new.key, Arc::downgrade(new));
     }
-}
 
-fn is_used(prepared: &Weak<PreparedHull>) -> bool {
-    prepared.strong_count() > 0
+    /// Forgets the hull with this fingerprint if nobody uses it.
+    fn forget(&mut self, key: u64) {
+        let Self(hulls) = self;
+        if hulls.get(&key).is_some_and(|hull| hull.strong_count() == 0) {
+            hulls.remove(&key);
+            if hulls.len() < hulls.capacity() / SPARSE {
+                hulls.shrink_to(2 * hulls.len());
+            }
+        }
+    }
 }
 
 #[cfg(test)]
@@ -224,6 +233,9 @@ mod tests {
         assert!(one.hull().is_some() && other.hull().is_some());
         assert!(one.matches(&six_sided(false)) && !one.matches(&six_sided(true)));
         assert!(other.matches(&six_sided(true)) && !other.matches(&six_sided(false)));
+        // They have one fingerprint, by which the latest is found.
+        let again = [true, false].map(|cut| PreparedHull::get_or_build(&six_sided(cut)));
+        assert!(Arc::ptr_eq(&other, &again[0]) && again[1].matches(&six_sided(false)));
     }
 
     /// A pyramid with a vertex inside its base, which has edges to all corners, or to all but one.
@@ -254,16 +266,15 @@ mod tests {
     #[test]
     fn what_nobody_uses_is_not_kept() {
         let used = PreparedHull::get_or_build(&pyramid(2.0, false));
+        let is_known = |key| HullRegistry::with(|registry| registry.0.contains_key(&key));
         for i in 0..1000 {
-            let seen = Arc::downgrade(&PreparedHull::get_or_build(&pyramid(3.0 + i as f32, false)));
-            assert_eq!(seen.strong_count(), 0);
+            let hull = PreparedHull::get_or_build(&pyramid(3.0 + i as f32, false));
+            let key = hull.key();
+            assert!(is_known(key));
+            drop(hull);
+            assert!(!is_known(key), "number {i} is kept");
         }
-        for _ in 0..1000 {
-            PreparedHull::get_or_build(&pyramid(2.5, false));
-        }
-        let kept =
-            HullRegistry::with(|registry| registry.shared.values().map(Vec::len).sum::<usize>());
-        assert!(kept < 100, "{kept} kept");
+        assert!(is_known(used.key()));
         assert!(Arc::ptr_eq(
             &used,
             &PreparedHull::get_or_build(&pyramid(2.0, false))
