@@ -46,7 +46,7 @@ impl DVec3x4 {
         x * a + y * b + z * c
     }
 
-    #[inline(always)]
+    #[inline]
     pub fn cross(self, other: Self) -> Self {
         let ([x, y, z], [a, b, c]) = (self.0, other.0);
         Self([y * c - b * z, z * a - c * x, x * b - a * y])

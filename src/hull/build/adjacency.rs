@@ -203,8 +203,11 @@ impl AdjacencyMatrix {
         self.merged.face_of[index(triangle)]
     }
 
-    /// The corners of all triangles, if all slots are known.
-    pub fn corners(&self) -> Box<[FaceCorner]> {
+    /// The corners of all faces, some of which are these polygons, if all slots are known.
+    pub fn corners(&self, polygons: &Rows<u32>) -> Box<[FaceCorner]> {
+        if polygons.len() > 0 {
+            return self.merged_corners(polygons);
+        }
         let corners = self.triangles().iter().map(|&[a, b, c]| {
             let (from_a, from_c) = (self.slot(a, b), self.slot(a, c));
             [
@@ -217,8 +220,7 @@ impl AdjacencyMatrix {
         corners.into_flattened().into()
     }
 
-    /// The corners of all faces, some of which are these polygons.
-    pub fn merged_corners(&self, polygons: &Rows<u32>) -> Box<[FaceCorner]> {
+    fn merged_corners(&self, polygons: &Rows<u32>) -> Box<[FaceCorner]> {
         let mut corners = Vec::with_capacity(3 * self.count);
         for &triangle in &self.merged.first_of {
             let face = match self.merged.polygon_of(triangle) {

@@ -70,11 +70,7 @@ impl SteepBuilder {
             return None;
         }
         let graph = self.walk_around_all(points.len(), radius)?;
-        let corners = if self.has_polygons {
-            self.matrix.merged_corners(polygons)
-        } else {
-            self.matrix.corners()
-        };
+        let corners = self.matrix.corners(polygons);
         let count = self.planes.len();
         self.planes.push(FaceRecord::end(&corners));
         Some(Hull {
