@@ -16,21 +16,18 @@ pub(super) struct AtRest {
 }
 
 impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
-    /// The answer by the flat or ruled side that gave the last normals, if the contacts hardly moved. The normals
+    /// The answer by the flat or ruled sides that gave the last normals, if the contacts hardly moved. The normals
     /// are outward, each in the frame of its shape.
-    pub(super) fn at_rest(&mut self, [last_1, last_2]: [DVec3; 2]) -> Option<CurvedAnswer> {
+    pub(super) fn at_rest(&mut self, normals: [DVec3; 2]) -> Option<CurvedAnswer> {
         let last = self.last?;
-        if !last.are_within(last_1, STILL * self.cso.min_radius()) {
+        if !last.are_within(normals[0], STILL * self.cso.min_radius()) {
             return None;
         }
         let AtRest {
             signed_distance,
             normal,
             on_1,
-        } = self
-            .on_second_flat(last, last_2)
-            .or_else(|| self.on_first_flat(last, last_1))
-            .or_else(|| self.on_ruled_side(last, [last_1, last_2]))?;
+        } = self.on_sides(last, normals)?;
         if signed_distance > self.max_distance {
             return None;
         }

@@ -2,109 +2,119 @@
 
 use glam::DVec3;
 
-use super::at_rest::AtRest;
 use super::piece::FlatSide;
-use super::query::CurvedQuery;
 use super::surface_pieces::SurfacePieces;
-use crate::query::{LastContacts, cone_contains_ball};
+use crate::query::{Disc, cone_contains_ball};
 use crate::stats::Cost;
 use crate::support::Cso;
-use crate::tolerance::SAME_NORMAL;
-use crate::tuning::FLUSH_TIE;
-
-impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
-    /// What the flat side of the first shape with this normal proves.
-    pub(super) fn on_first_flat(&mut self, last: &LastContacts, normal: DVec3) -> Option<AtRest> {
-        let tolerance = self.tolerance();
-        let flat = flat_side(self.cso.shape_1, normal, self.cost)?;
-        let side = OnFlatSide::new(self.cso, flat, self.cost);
-        let middle = || last.middle_of_deepest(flat.normal, FLUSH_TIE * tolerance);
-        let middle = || self.cso.pose.point_to_2(middle());
-        let [on_1, _] = side.proved(tolerance, middle, self.cost)?;
-        Some(AtRest {
-            signed_distance: side.separation,
-            normal: flat.normal,
-            on_1,
-        })
-    }
-
-    /// The same of the second shape, whose normal is outward in its frame.
-    pub(super) fn on_second_flat(&mut self, last: &LastContacts, outward: DVec3) -> Option<AtRest> {
-        let (cso, tolerance) = (self.cso, self.tolerance());
-        let flat = flat_side(cso.shape_2, outward, self.cost)?;
-        let inverse = cso.pose.inverse();
-        let reversed = cso.reversed(&inverse);
-        let normal = -cso.pose.direction_to_1(flat.normal);
-        let side = OnFlatSide::new(&reversed, flat, self.cost);
-        let middle = || last.middle_of_deepest(normal, FLUSH_TIE * tolerance);
-        let [_, on_1] = side.proved(tolerance, middle, self.cost)?;
-        Some(AtRest {
-            signed_distance: side.separation,
-            normal,
-            on_1,
-        })
-    }
-}
-
-/// The flat side of a shape that has this normal.
-fn flat_side(shape: &impl SurfacePieces, normal: DVec3, cost: &mut Cost) -> Option<FlatSide> {
-    let (_, vertex) = shape.support(normal, shape.start_vertex(normal), cost);
-    let flat = shape.flat(normal, vertex)?;
-    (flat.normal.distance_squared(normal) < SAME_NORMAL * SAME_NORMAL).then_some(flat)
-}
+use crate::tuning::SMALL_TURN;
 
 /// A flat side of the first shape, and the point of the second one that is nearest to its plane, or deepest under it.
-struct OnFlatSide<'a, 'c, A, B> {
+pub(super) struct OnFlatSide<'a, 'c, A, B> {
     cso: &'a Cso<'c, A, B>,
-    flat: FlatSide,
+    pub flat: FlatSide,
     /// In the frame of the second shape.
     nearest: DVec3,
-    separation: f64,
+    pub separation: f64,
+}
+
+/// A point of the second shape in its frame, and the point of the plane of a flat side under it.
+struct PointOver {
+    on_1: DVec3,
+    on_2: DVec3,
+    height: f64,
+    /// How far the point of the plane is inside of the side.
+    inset: f64,
 }
 
 impl<'a, 'c, A: SurfacePieces, B: SurfacePieces> OnFlatSide<'a, 'c, A, B> {
-    fn new(cso: &'a Cso<'c, A, B>, flat: FlatSide, cost: &mut Cost) -> Self {
-        let towards = -cso.pose.direction_to_2(flat.normal);
-        let start = cso.shape_2.start_vertex(towards);
-        let (nearest, _) = cso.shape_2.support(towards, start, cost);
-        let height = flat.normal.dot(cso.pose.point_to_1(nearest));
-        Self {
+    /// The flat side of the first shape whose normal is close to this one.
+    pub fn new(cso: &'a Cso<'c, A, B>, normal: DVec3, cost: &mut Cost) -> Option<Self> {
+        let Cso {
+            shape_1,
+            shape_2,
+            pose,
+        } = cso;
+        let (_, vertex) = shape_1.support(normal, shape_1.start_vertex(normal), cost);
+        let flat = shape_1.flat(normal, vertex)?;
+        if flat.normal.distance_squared(normal) > SMALL_TURN * SMALL_TURN {
+            return None;
+        }
+        let towards = -pose.direction_to_2(flat.normal);
+        let (nearest, _) = shape_2.support(towards, shape_2.start_vertex(towards), cost);
+        let height = flat.normal.dot(pose.point_to_1(nearest));
+        Some(Self {
             cso,
             flat,
             nearest,
             separation: height - flat.offset,
-        }
+        })
     }
 
     /// Points of both shapes, each in its frame, that prove the separation to be the signed distance up to the
-    /// tolerance. That of the second one is nearest, or near the `middle` of the contacts.
-    fn proved(
+    /// tolerance: the nearest one, if it is over the side.
+    ///
+    /// Where the shapes overlap, there is a disc in the difference: the side around the point under the nearest one,
+    /// minus this one. It proves the depth if it is wide enough. Otherwise a disc in the middle of the contacts may
+    /// (T14).
+    pub fn at_nearest(
         &self,
         tolerance: f64,
         middle: impl FnOnce() -> DVec3,
         cost: &mut Cost,
     ) -> Option<[DVec3; 2]> {
-        if let Some(on_1) = self.proves(self.nearest, tolerance) {
-            return Some([on_1, self.nearest]);
+        let (cso, normal) = (self.cso, self.flat.normal);
+        let most = self.separation + tolerance;
+        let nearest = self.over(self.nearest);
+        if nearest.inset <= 0.0 {
+            return None;
         }
-        let Cso { shape_2, pose, .. } = self.cso;
-        let towards = -pose.direction_to_2(self.flat.normal);
-        let on_2 = shape_2.point_on_side(towards, middle(), cost)?;
-        self.proves(on_2, tolerance).map(|on_1| [on_1, on_2])
+        let is_proved = most >= 0.0
+            || cone_contains_ball(nearest.inset, -most, cso.center(), normal)
+            || self
+                .over_side(middle(), cost)
+                .is_some_and(|middle| middle.disc().proves(cso, normal, nearest.height, most));
+        is_proved.then_some([nearest.on_1, nearest.on_2])
     }
 
-    /// The point of the flat side beside a point of the second shape, if they prove the signed distance. Where the
-    /// shapes overlap, there is a disc in the difference, around this point minus the other.
-    fn proves(&self, on_2: DVec3, tolerance: f64) -> Option<DVec3> {
-        let normal = self.flat.normal;
-        let at = self.cso.pose.point_to_1(on_2);
-        let height = normal.dot(at) - self.flat.offset;
-        let on_1 = at - normal * height;
-        let inset = self.cso.shape_1.inset(&self.flat, on_1);
+    /// The same by a point near the middle of the contacts.
+    pub fn at_middle(&self, tolerance: f64, middle: DVec3, cost: &mut Cost) -> Option<[DVec3; 2]> {
         let most = self.separation + tolerance;
-        let is_proved = height <= most
-            && inset > 0.0
-            && (most >= 0.0 || cone_contains_ball(inset, -most, self.cso.center(), normal));
-        is_proved.then_some(on_1)
+        let middle = self.over_side(middle, cost)?;
+        let (disc, normal) = (middle.disc(), self.flat.normal);
+        let is_proved = middle.height <= most
+            && (most >= 0.0 || disc.proves(self.cso, normal, middle.height, most));
+        is_proved.then_some([middle.on_1, middle.on_2])
+    }
+
+    /// A point of the second shape, in its frame.
+    fn over(&self, on_2: DVec3) -> PointOver {
+        let p = self.cso.pose.point_to_1(on_2);
+        let height = self.flat.normal.dot(p) - self.flat.offset;
+        let on_1 = p - self.flat.normal * height;
+        PointOver {
+            on_1,
+            on_2,
+            height,
+            inset: self.cso.shape_1.inset(&self.flat, on_1),
+        }
+    }
+
+    /// A point near `middle` of the side of the second shape in contact, if it is over the flat side.
+    fn over_side(&self, middle: DVec3, cost: &mut Cost) -> Option<PointOver> {
+        let towards = -self.cso.pose.direction_to_2(self.flat.normal);
+        let on_2 = self.cso.shape_2.point_on_side(towards, middle, cost)?;
+        let over = self.over(on_2);
+        (over.inset > 0.0).then_some(over)
+    }
+}
+
+impl PointOver {
+    /// The points of the flat side around the lower point minus the upper one.
+    fn disc(&self) -> Disc {
+        Disc {
+            radius: self.inset,
+            highest: self.height,
+        }
     }
 }

@@ -49,6 +49,29 @@ impl Flat<'_> {
         (inset >= 0.0).then_some(inset)
     }
 
+    /// The centre and the radius, if the outline is a circle.
+    pub fn circle(&self) -> Option<(DVec3, f64)> {
+        match self.side.outline {
+            Outline::Disc { center, radius } => Some((center, radius)),
+            Outline::Polygon(_) => None,
+        }
+    }
+
+    /// A direction of the outline at a point on it.
+    pub fn direction_at(&self, p: DVec3) -> DVec3 {
+        if let Some((center, _)) = self.circle() {
+            return self.side.normal.cross(p - center);
+        }
+        let mut nearest = (f64::INFINITY, DVec3::ZERO);
+        for ([from, inward], _) in self.sides() {
+            let inset = inward.dot(p - from);
+            if inset < nearest.0 {
+                nearest = (inset, inward);
+            }
+        }
+        nearest.1.cross(self.side.normal)
+    }
+
     /// The first corner, the inward unit vector and the length of each edge.
     fn sides(&self) -> impl Iterator<Item = ([DVec3; 2], f64)> {
         let count = self.corners.len();

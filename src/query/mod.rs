@@ -28,7 +28,7 @@ pub use patch::{ContactPatch, PatchVertex};
 
 pub use crate::ids::{EdgeId, FaceId, VertexId};
 
-pub(crate) use certificate::flush::FlushFaces;
+pub(crate) use certificate::flush::{Disc, FlushFaces};
 pub(crate) use certificate::{cone_contains_ball, inset};
 pub(crate) use contact_id::contact_keys;
 pub(crate) use feature::vertices;

@@ -18,7 +18,7 @@ use crate::map_pair::map_pair;
 use crate::pose::RelativePose;
 use crate::query::types::Proximity;
 use crate::simd::LANES;
-use crate::support::{Cso, FaceId, Polytope};
+use crate::support::{Cso, FaceId, Polytope, Support};
 use crate::tolerance::{DEPTH_GAP, KEPT_ANGLE_COS};
 
 /// A face of each shape, and the middle of the contacts between them, in frame 1.
@@ -34,12 +34,12 @@ struct PointPair {
     distance: f64,
 }
 
-/// Differences of points of both faces: a disc across a normal, around the line through the origin along it. Heights
+/// Differences of points of both shapes: a disc across a normal, around the line through the origin along it. Heights
 /// are given as distances between the shapes.
-struct Disc {
-    radius: f64,
+pub(crate) struct Disc {
+    pub radius: f64,
     /// The greatest distance in the disc.
-    highest: f64,
+    pub highest: f64,
 }
 
 impl FlushFaces {
@@ -77,8 +77,7 @@ impl FlushFaces {
             distance_beside(cso.shape_1, face, normal, inside, vertex)
         };
         self.some_disc(cso, normal, &middle, |disc| {
-            let lift = (disc.highest - signed_distance).max(0.0);
-            let over_origin = signed_distance + lift * beside / (beside + disc.radius);
+            let over_origin = disc.over_origin(signed_distance, beside);
             over_origin <= most && disc.proves(cso, normal, over_origin, most)
         })
     }
@@ -212,10 +211,18 @@ impl FlushFaces {
 }
 
 impl Disc {
+    /// Where a point of the difference at a signed distance, `beside` the line through the origin, leads to the line: the
+    /// segment from there to the opposite side of the disc crosses it.
+    #[inline]
+    pub fn over_origin(&self, signed_distance: f64, beside: f64) -> f64 {
+        let lift = (self.highest - signed_distance).max(0.0);
+        signed_distance + lift * beside / (beside + self.radius)
+    }
+
     /// Whether no direction has a smaller depth than `-most`, given a point of the difference over the origin, along a
     /// normal, at the signed distance `over_origin`.
     #[inline]
-    fn proves<A: Polytope, B: Polytope>(
+    pub fn proves<A: Support, B: Support>(
         &self,
         cso: &Cso<'_, A, B>,
         normal: DVec3,
