@@ -21,14 +21,14 @@ use std::process::{Command, ExitCode};
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Rotation, Vector};
 use parry3d::shape::SharedShape;
-use testkit::pair::{FRAMES, GAPS, Manifolds, REST, hull, resting, trajectory, trembling, update};
+use testkit::pair::{
+    FRAMES, GAPS, Manifolds, REST, SHAKEN, hull, resting, trajectory, trembling, update,
+};
 use testkit::scenes::hulls;
 
 /// What another minor version of the compiler may cost.
 const TOLERANCE: f64 = 0.05;
 const KNOWN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.json");
-/// What shaken bodies tremble by, in metres and radians.
-const SHAKEN: f32 = 2e-5;
 /// Frames of the short run; the long one has them all.
 const SHORT: usize = 40;
 

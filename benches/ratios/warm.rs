@@ -6,7 +6,9 @@ use isa_gjk::{IsaGjkDispatcher, PreparedShapes};
 use parry3d::math::{Pose, Vector};
 use parry3d::query::{DefaultQueryDispatcher, PersistentQueryDispatcher};
 use parry3d::shape::SharedShape;
-use testkit::pair::{FRAMES, GAPS, Manifolds, REST, VERTICES, hull, trajectory, trembling, update};
+use testkit::pair::{
+    FRAMES, GAPS, Manifolds, REST, SHAKEN, VERTICES, hull, trajectory, trembling, update,
+};
 use testkit::scenes::hulls;
 
 use crate::in_turn;
@@ -59,15 +61,15 @@ const CURVED_GAPS: [(&str, f32); 4] = [
     ("50 mm deep", -0.05),
 ];
 
-/// Cylinders and cones, a metre high, in the same motion; and standing on the other shape, 1 mm deep.
+/// Cylinders and cones, a metre high, in the same motion; and standing on the other shape, 1 mm deep, at rest or shaken.
 pub fn curved() {
     let names = CURVED_GAPS.map(|(name, _)| name).join(" | ");
     println!("### Cylinders and cones: ns, default → ours, ratio\n");
-    println!("| pair | {names} | at rest |\n|---|---|---|---|---|---|");
+    println!("| pair | {names} | at rest | shaken |\n|---|---|---|---|---|---|---|");
     for (name, shapes) in curved_pairs() {
         let moving = CURVED_GAPS.map(|(_, gap)| trajectory(&shapes, gap, 1.0));
-        let standing = trembling(0.999, REST);
-        let row = moving.iter().chain([&standing]).map(|poses| {
+        let standing = [REST, SHAKEN].map(|tremble| trembling(0.999, tremble));
+        let row = moving.iter().chain(&standing).map(|poses| {
             let ours = IsaGjkDispatcher::default();
             in_turn(
                 FRAMES,

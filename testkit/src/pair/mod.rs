@@ -6,6 +6,6 @@ mod trajectory;
 mod update;
 
 pub use hull::hull;
-pub use resting::{REST, resting, trembling};
+pub use resting::{REST, SHAKEN, resting, trembling};
 pub use trajectory::{FRAMES, GAPS, PREDICTION, VERTICES, trajectory};
 pub use update::{Manifolds, update};

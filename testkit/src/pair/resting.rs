@@ -8,6 +8,8 @@ use crate::scenes::hulls;
 
 /// What bodies at rest tremble by: a thousandth of a millimetre.
 pub const REST: f32 = 1e-6;
+/// What shaken bodies tremble by, in metres and radians.
+pub const SHAKEN: f32 = 2e-5;
 
 /// Two prisms with so many sides, and poses of the second in the frame of the first: it lies on it, 2 mm deep, and
 /// trembles.
