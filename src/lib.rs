@@ -85,6 +85,7 @@ mod ids;
 mod manifold;
 mod map_pair;
 mod mix;
+mod oriented_box;
 mod parry;
 mod pose;
 mod primitive;

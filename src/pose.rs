@@ -1,6 +1,6 @@
 //! The pose of the second shape in the frame of the first, in f64.
 
-use glam::{DMat3, DQuat, DVec3, Quat};
+use glam::{DMat3, DQuat, DVec3, Quat, Vec3};
 use parry3d::math::Pose;
 
 use crate::simd::DVec3x4;
@@ -93,6 +93,21 @@ impl RelativePose {
     #[inline]
     pub(crate) fn translation(&self) -> DVec3 {
         self.translation
+    }
+
+    /// The rows of the rotation from frame 2 to frame 1, in f32.
+    #[inline]
+    pub(crate) fn rotation_rows(&self) -> [Vec3; 3] {
+        let [x, y, z] = [
+            self.rotation.x_axis.as_vec3(),
+            self.rotation.y_axis.as_vec3(),
+            self.rotation.z_axis.as_vec3(),
+        ];
+        [
+            Vec3::new(x.x, y.x, z.x),
+            Vec3::new(x.y, y.y, z.y),
+            Vec3::new(x.z, y.z, z.z),
+        ]
     }
 
     /// The pose of shape 1 in frame 2.

@@ -1,13 +1,13 @@
 //! Shapes as the kernels see them: extreme points with vertex ids, and the faces of polytopes.
 
-use std::cmp::Ordering;
-use std::iter;
+use std::{cmp::Ordering, iter};
 
 use glam::DVec3;
 
 pub use crate::corners::{FaceCorners, FacePoints};
 pub(crate) use crate::ids::ShapeKind;
 pub use crate::ids::{EdgeId, FaceId, ShapeId, VertexId};
+use crate::oriented_box::OrientedBox;
 use crate::pose::RelativePose;
 use crate::stats::Cost;
 
@@ -110,8 +110,17 @@ pub trait Polytope: Support {
 
     /// How far inside a face a point of its plane is, negative outside, if this costs less than a look at its
     /// corners.
-    fn face_inset(&self, face: FaceId, p: DVec3) -> Option<f64> {
-        let _ = (face, p);
+    fn face_inset(&self, _face: FaceId, _p: DVec3) -> Option<f64> {
+        None
+    }
+
+    /// Whether a ball that touches the plane of a face from inside is known to be in the shape, at little cost.
+    fn holds_ball(&self, _face: FaceId, _center: DVec3, _radius: f64) -> bool {
+        false
+    }
+
+    /// The box that the shape is, if it is known to be one.
+    fn oriented_box(&self) -> Option<&OrientedBox> {
         None
     }
 
@@ -138,8 +147,7 @@ pub trait Polytope: Support {
     /// The cluster of a face, if it has neighbours that lie nearly in its plane: the id of a convex outline
     /// around them all, and the faces under the outline. `face_len`, `face_vertex` and `face_edge` take this
     /// id, although it is not a face.
-    fn cluster(&self, face: FaceId) -> Option<(FaceId, &[u16])> {
-        let _ = face;
+    fn cluster(&self, _face: FaceId) -> Option<(FaceId, &[u16])> {
         None
     }
 

@@ -52,6 +52,9 @@ pub(crate) const WIDE_SINE: f64 = 1e-2;
 /// to be clipped.
 pub(crate) const EDGE_ON: f64 = 0.05;
 
+/// Two faces are tried as sides of a box that meet if their cosine is below this.
+pub(crate) const SQUARE: f32 = 1e-3;
+
 /// A face cluster whose slope over the contact plane is below this lies on it. Chosen for slabs with
 /// noisy sides: a face seen edge-on under the outline is then a wall beside it, and is left out. The
 /// outline passes such a wall only between corners of the rim at different heights, by a thirtieth of

@@ -5,8 +5,10 @@ use std::sync::OnceLock;
 use glam::{DVec3, Vec3};
 
 use super::clusters::FaceClusters;
+use super::face_planes::FacePlanes;
 use super::graph::{FaceCorner, NO_EDGE, pack_edge};
 use crate::at::At;
+use crate::oriented_box::OrientedBox;
 use crate::support::{EdgeId, FaceCorners, FaceId, VertexId};
 
 /// The faces, and the clusters of some of them.
@@ -18,6 +20,7 @@ pub(super) struct Faces {
     pub(super) corners: Box<[FaceCorner]>,
     /// Grown when the first of them is looked up: few hulls ever rest on one.
     pub(super) clusters: OnceLock<Box<FaceClusters>>,
+    planes: FacePlanes,
 }
 
 /// A face with its supporting plane. Values that are read together lie together, since large hulls do not
@@ -89,6 +92,34 @@ impl FaceRecord {
 }
 
 impl Faces {
+    /// From the faces, with an end, and their corners.
+    pub(super) fn from_lists(polygons: Box<[FaceRecord]>, corners: Box<[FaceCorner]>) -> Self {
+        let count = polygons.len() - 1;
+        let planes = polygons[..count]
+            .iter()
+            .map(|face| (face.normal, face.offset));
+        Self {
+            planes: FacePlanes::new(planes),
+            polygons,
+            count,
+            corners,
+            clusters: OnceLock::new(),
+        }
+    }
+
+    /// The box that the hull is, if it is one.
+    pub(super) fn oriented_box(&self, points: &[Vec3], radius: f64) -> Option<Box<OrientedBox>> {
+        let faces = &self.polygons[..self.count];
+        let normals = faces.iter().map(|face| face.normal);
+        OrientedBox::with_corners(points, normals, radius).map(Box::new)
+    }
+
+    /// Whether a ball that touches the plane of a face from inside is known to be beneath all other planes.
+    #[inline]
+    pub fn hold_ball(&self, face: FaceId, center: DVec3, radius: f64) -> bool {
+        self.planes.are_beyond(face, center, radius)
+    }
+
     pub fn len(&self) -> usize {
         self.count
     }
@@ -174,6 +205,9 @@ impl Faces {
             .clusters
             .get()
             .map_or(0, |clusters| clusters.heap_bytes());
-        size_of_val(&*self.polygons) + size_of_val(&*self.corners) + clusters
+        size_of_val(&*self.polygons)
+            + size_of_val(&*self.corners)
+            + self.planes.heap_bytes()
+            + clusters
     }
 }

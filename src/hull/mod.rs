@@ -6,6 +6,7 @@ mod climb;
 mod cluster_growth;
 mod clusters;
 mod error;
+mod face_planes;
 mod faces;
 mod graph;
 mod lists;
@@ -17,6 +18,7 @@ pub use error::HullError;
 
 use glam::{DVec3, Vec3};
 
+use crate::oriented_box::OrientedBox;
 use crate::stats::Cost;
 use crate::support::{
     EdgeId, FaceCorners, FaceId, FacePoints, Polytope, ShapeId, Support, VertexId,
@@ -43,6 +45,8 @@ pub struct Hull {
     faces: Faces,
     search: SupportSearch,
     id: ShapeId,
+    /// If it is a box.
+    oriented_box: Option<Box<OrientedBox>>,
 }
 
 /// How extreme vertices are found.
@@ -86,7 +90,11 @@ impl Hull {
             SupportSearch::Scan(scan) => scan.heap_bytes(),
             SupportSearch::Climb(start) => start.heap_bytes(),
         };
-        size_of_val(&*self.points) + search + self.graph.heap_bytes() + self.faces.heap_bytes()
+        size_of_val(&*self.points)
+            + search
+            + self.graph.heap_bytes()
+            + self.faces.heap_bytes()
+            + self.oriented_box.as_deref().map_or(0, size_of_val)
     }
 
     /// The extreme vertices in many directions. All climbs take their first step together: its memory is not
@@ -237,6 +245,16 @@ impl Polytope for Hull {
             points: &self.points,
             corners: self.faces.polygon(face),
         }
+    }
+
+    #[inline]
+    fn holds_ball(&self, face: FaceId, center: DVec3, radius: f64) -> bool {
+        self.faces.hold_ball(face, center, radius)
+    }
+
+    #[inline]
+    fn oriented_box(&self) -> Option<&OrientedBox> {
+        self.oriented_box.as_deref()
     }
 
     #[inline]

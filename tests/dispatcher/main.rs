@@ -5,6 +5,7 @@ mod axis_frame;
 mod bad_input;
 mod balls;
 mod bounds;
+mod boxes;
 mod capsules;
 mod changed_shapes;
 mod coherence;

@@ -1,5 +1,7 @@
 //! What the kernels answer: hulls, supports, simplices, GJK, EPA and ray casts.
 
+mod balls_in_hulls;
+mod boxes;
 mod curved_oracle;
 mod every_start;
 mod feet;

@@ -1,7 +1,6 @@
 //! Merging coplanar triangles into faces.
 
 use std::mem;
-use std::sync::OnceLock;
 
 use glam::DVec3;
 
@@ -190,14 +189,8 @@ impl Builder<'_> {
     }
 
     fn finish(mut self) -> (Faces, MergedFaces) {
-        let count = self.polygons.len();
         self.polygons.push(FaceRecord::end(&self.corners));
-        let faces = Faces {
-            polygons: self.polygons.into(),
-            count,
-            corners: self.corners.into(),
-            clusters: OnceLock::new(),
-        };
+        let faces = Faces::from_lists(self.polygons.into(), self.corners.into());
         (faces, self.merged)
     }
 }

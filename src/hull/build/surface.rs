@@ -116,6 +116,7 @@ impl<'a> Surface<'a> {
             });
         }
         let hull = Hull {
+            oriented_box: faces.oriented_box(&points, radius),
             search: SupportSearch::new(&points, &graph, center, radius),
             points: points.into(),
             graph,

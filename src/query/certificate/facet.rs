@@ -9,12 +9,15 @@
 //!   difference is that near;
 //! - if they overlap by `d`: the pyramid from the polygon to the difference's centre lies in the difference.
 //!   If the origin is at least `d` inside all of its sides, so does the ball of radius `d`, and no direction
-//!   has a smaller depth. This is a *global* proof, although no other face was examined.
+//!   has a smaller depth. This is a *global* proof, although no other face was examined. Before that, a copy
+//!   of the shape with the face, around the vertex, may contain the ball; and of two boxes all separating axes
+//!   are compared.
 
 use std::cmp::Ordering;
 
 use glam::DVec3;
 
+use super::boxes::are_deep_boxes;
 use super::flush::FlushFaces;
 use super::polygon::{cone_contains_ball, crossing, inset, inset_of_origin, pyramid_contains_ball};
 use crate::gjk::SeparatingAxis;
@@ -135,15 +138,15 @@ impl FacetTest {
         face: FaceId,
         flush: &mut dyn FnMut() -> Option<FlushFaces>,
     ) -> bool {
-        let &Proximity {
-            signed_distance,
-            normal,
-            on_2,
-            ..
-        } = near;
+        let (signed_distance, normal, on_2) = (near.signed_distance, near.normal, near.on_2);
         let depth = -signed_distance - self.tolerance;
+        // The difference contains a copy of the first shape around the vertex of the second one.
+        let ball = if depth > 0.0 { on_2 } else { near.on_1 };
+        if cso.shape_1.holds_ball(face, ball, depth.max(0.0)) {
+            return true;
+        }
         if depth >= SHALLOW * cso.shape_1.radius() {
-            return false;
+            return are_deep_boxes(cso, depth) && cso.shape_1.holds_ball(face, near.on_1, 0.0);
         }
         let (corners, radius) = (cso.shape_1.face_corners(face), cso.shape_1.radius());
         let mut flush_faces_prove = |is_over: bool| {
@@ -159,7 +162,10 @@ impl FacetTest {
         }
         let inset = inset(corners, radius, normal, on_2, signed_distance);
         let is_over = inset > 0.0;
-        is_over && (depth <= 0.0 || cone_contains_ball(inset, depth, cso.center(), normal))
+        is_over
+            && (depth <= 0.0
+                || cone_contains_ball(inset, depth, cso.center(), normal)
+                || are_deep_boxes(cso, depth))
             || !has_many_sides && flush_faces_prove(is_over)
     }
 
@@ -215,10 +221,10 @@ impl FacetTest {
             features,
         };
         let depth = -signed_distance - self.tolerance;
-        // The sides of the parallelogram are along the edges.
         let inset = s.min(1.0 - s).min(t).min(1.0 - t) * plane.least_height;
         if signed_distance >= 0.0
             || cone_contains_ball(inset, depth, center, normal)
+            || are_deep_boxes(cso, depth)
             || pyramid_contains_ball(corners().iter().map(|corner| corner.w), center, depth)
         {
             return Verdict::Certified(proximity);
@@ -233,7 +239,7 @@ struct EdgePlane {
     normal: DVec3,
     /// Whether the normal is along the cross product of the edges' directions, not against it.
     is_along_cross: bool,
-    /// The smaller height of the parallelogram.
+    /// The smaller height of the parallelogram. Its sides are along the edges.
     least_height: f64,
 }
 

@@ -1,7 +1,6 @@
 //! The checks of a surface, and its planes.
 
 use std::mem;
-use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3};
 
@@ -71,18 +70,14 @@ impl SteepBuilder {
         }
         let graph = self.walk_around_all(points.len(), radius)?;
         let corners = self.matrix.corners(polygons);
-        let count = self.planes.len();
         self.planes.push(FaceRecord::end(&corners));
+        let faces = Faces::from_lists(self.planes.as_slice().into(), corners);
         Some(Hull {
+            oriented_box: faces.oriented_box(points, radius),
             search: SupportSearch::Scan(Scan::new(points, center, radius)?),
             points: points.into(),
             graph,
-            faces: Faces {
-                count,
-                polygons: self.planes.as_slice().into(),
-                corners,
-                clusters: OnceLock::new(),
-            },
+            faces,
             center,
             radius,
             id: ShapeId::new(),

@@ -39,8 +39,9 @@ fn parts(hull: &Hull) -> String {
         faces,
         search,
         id: _,
+        oriented_box,
     } = hull;
-    format!("{center:?} {radius:?} {points:?} {graph:?} {faces:?} {search:?}")
+    format!("{center:?} {radius:?} {points:?} {graph:?} {faces:?} {search:?} {oriented_box:?}")
 }
 
 #[test]
