@@ -118,12 +118,13 @@ impl Patch {
         let offset = first.project(c2) - c1;
         let distance = offset.length();
         let along = 0.5 * (distance + (r1 * r1 - r2 * r2) / distance);
-        let squared = r1 * r1 - along * along;
-        if !(squared > 0.0) {
+        let height = (r1 * r1 - along * along).sqrt();
+        // It is NaN for circles that do not cross, as concentric ones.
+        if height.is_nan() || height == 0.0 {
             return;
         }
         let way = offset / distance;
-        let beside = first.side.normal.cross(way) * squared.sqrt();
+        let beside = first.side.normal.cross(way) * height;
         for sign in [-1.0, 1.0] {
             let on_1 = c1 + way * along + beside * sign;
             let on_2 = second.project(on_1);
@@ -160,8 +161,8 @@ impl Patch {
         let normal = self.normal();
         let mut heights = [0.0; 2];
         let (mut radius, mut lift) = (0.0, 0.0);
-        for side in 0..2 {
-            heights[side] = self.height_over(side, p)?;
+        for (side, height) in heights.iter_mut().enumerate() {
+            *height = self.height_over(side, p)?;
             if let Some(flat) = self.flat(side) {
                 let inset = flat.inset(p)?;
                 radius += inset * flat.side.normal.dot(normal).abs();
