@@ -7,6 +7,7 @@ mod balls;
 mod bounds;
 mod boxes;
 mod capsules;
+mod casts_in_contact;
 mod changed_shapes;
 mod coherence;
 mod contacts;

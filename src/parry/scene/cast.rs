@@ -8,16 +8,16 @@ use parry3d::shape::Shape;
 use crate::curved::SurfacePieces;
 use crate::parry::pair::{Pair, PairVisitor};
 use crate::parry::scene::caller::{CallerProximity, KernelFrame};
+use crate::parry::scene::contact::contact_of_any;
 use crate::parry::scene::convex;
 use crate::parry::visit;
 use crate::parry::workspace::Workspace;
 use crate::pose::ValidPose;
-use crate::query::{Answer, PairMemory, Query};
 use crate::ray_cast::{Impact, RayCast, ray_cast};
 use crate::simplex::Preferred;
 use crate::stats::Cost;
-use crate::support::{Cso, Polytope, Support};
-use crate::tolerance::{GRAZING, RAY_TOUCHING};
+use crate::support::{Polytope, Support};
+use crate::tolerance::GRAZING;
 
 /// When shape 2, moving by `velocity` relative to shape 1 (in frame 1), meets shape 1. As with parry, a
 /// shape that does not move meets nothing.
@@ -33,12 +33,14 @@ pub(crate) fn cast_shapes(
         velocity,
         options,
     };
-    // Where they overlap at the start parry says what happens.
-    visit::shapes(shape_1, shape_2, cast).or_else(|_| {
-        convex::visit([shape_1, shape_2], |pair, _| {
-            cast.cast(pair, |_, _, _| Err(Unsupported))
-        })
-    })
+    let shapes = [shape_1, shape_2];
+    let found = visit::shapes(shape_1, shape_2, cast)
+        .or_else(|_| convex::visit(shapes, |pair, _| Ok(cast.cast(pair))))?;
+    match found {
+        Meeting::Miss => Ok(None),
+        Meeting::Hit(hit) => Ok(Some(hit)),
+        Meeting::Overlap { size } => cast.overlap(shapes, size),
+    }
 }
 
 #[derive(Clone, Copy)]
@@ -48,43 +50,42 @@ struct Cast<'a> {
     options: ShapeCastOptions,
 }
 
+/// How a cast ends.
+enum Meeting {
+    Miss,
+    Hit(ShapeCastHit),
+    /// The shapes touch, or are within the target distance, at the start.
+    Overlap {
+        /// The size of the pair.
+        size: f64,
+    },
+}
+
 impl PairVisitor for Cast<'_> {
-    type Answer = Option<ShapeCastHit>;
+    type Answer = Meeting;
 
     fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,
-        workspace: &mut Workspace,
+        _: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
-        self.cast(pair, |cso, velocity, frame| {
-            self.overlap(cso, velocity, frame, workspace)
-        })
+        Ok(self.cast(pair))
     }
 
-    /// parry answers how deep they overlap.
     fn visit_curved<B: SurfacePieces>(
         &mut self,
         pair: &Pair<'_, B>,
         _: &mut Workspace,
     ) -> Result<Self::Answer, Unsupported> {
-        self.cast(pair, |_, _, _| Err(Unsupported))
+        Ok(self.cast(pair))
     }
 }
 
 impl Cast<'_> {
-    /// `overlap` answers for shapes that are within the target distance at the start.
-    fn cast<A: Support, B: Support>(
-        &self,
-        pair: &Pair<'_, B, A>,
-        overlap: impl FnOnce(
-            &Cso<'_, A, B>,
-            DVec3,
-            &KernelFrame<'_>,
-        ) -> Result<Option<ShapeCastHit>, Unsupported>,
-    ) -> Result<Option<ShapeCastHit>, Unsupported> {
+    fn cast<A: Support, B: Support>(&self, pair: &Pair<'_, B, A>) -> Meeting {
         let moves = self.velocity.is_finite() && self.velocity != Vector::ZERO;
         let Some(pos12) = ValidPose::new(self.pos12).filter(|_| moves) else {
-            return Ok(None);
+            return Meeting::Miss;
         };
         let pose = pair.pose(pos12);
         let cso = pair.cso(&pose);
@@ -104,13 +105,12 @@ impl Cast<'_> {
             &mut Cost::default(),
         );
         match impact {
-            RayCast::Miss => Ok(None),
-            RayCast::Hit(impact) => Ok(Some(hit_at(&impact, velocity, &frame))),
+            RayCast::Hit(impact) => Meeting::Hit(hit_at(&impact, velocity, &frame)),
             // This is also false for NaN.
             RayCast::Overlap if self.options.max_time_of_impact >= 0.0 => {
-                overlap(&cso, velocity, &frame)
+                Meeting::Overlap { size: cso.size() }
             }
-            RayCast::Overlap => Ok(None),
+            RayCast::Miss | RayCast::Overlap => Meeting::Miss,
         }
     }
 
@@ -122,31 +122,37 @@ impl Cast<'_> {
     /// Shapes that touch, or are within the target distance, at the start: they meet at time 0 if they
     /// approach, or if the cast shall stop there in any case. Shapes that separate or slide along each other
     /// meet nothing.
-    fn overlap<A: Polytope, B: Polytope>(
+    fn overlap(
         &self,
-        cso: &Cso<'_, A, B>,
-        velocity: DVec3,
-        frame: &KernelFrame<'_>,
-        workspace: &mut Workspace,
+        shapes: [&dyn Shape; 2],
+        size: f64,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        let mut cost = Cost::default();
-        let mut query = Query::new(cso, f64::INFINITY, &mut workspace.epa, &mut cost);
-        let (answer, _) = query.run(&PairMemory::None).ok_or(Unsupported)?;
-        let Answer::Near(near) = answer else {
+        let Some(near) = contact_of_any(self.pos12, shapes)? else {
             return Ok(None);
         };
-        let departs = near.normal.dot(velocity) >= -GRAZING * velocity.length();
+        let normal = near.normal1.as_dvec3();
+        let velocity = self.velocity.as_dvec3();
+        let departs = normal.dot(velocity) >= -GRAZING * velocity.length();
         if departs && !self.options.stop_at_penetration {
             return Ok(None);
         }
-        let near = CallerProximity::of_proximity(&near, frame);
-        let slack = RAY_TOUCHING * cso.size();
-        let status = if near.signed_distance < f64::from(self.target_distance()) - slack {
+        // The distance is rounded to f32.
+        let slack = f64::from(f32::EPSILON) * size;
+        let status = if f64::from(near.dist) < f64::from(self.target_distance()) - slack {
             ShapeCastStatus::PenetratingOrWithinTargetDist
         } else {
             ShapeCastStatus::Converged
         };
-        Ok(Some(hit(0.0, &near, status)))
+        Ok(Some(ShapeCastHit {
+            time_of_impact: 0.0,
+            witness1: near.point1,
+            witness2: near.point2,
+            normal1: near.normal1,
+            normal2: near.normal2,
+            status,
+            subshape1: 0,
+            subshape2: 0,
+        }))
     }
 }
 

@@ -34,6 +34,19 @@ pub(crate) fn contact(
         .or_else(|_| convex::visit_inexact(shapes, |pair, workspace| query.convex(pair, workspace)))
 }
 
+/// The deepest contact of two convex shapes, also where [`contact`] leaves it to parry.
+pub(super) fn contact_of_any(
+    pos12: &Pose,
+    shapes: [&dyn Shape; 2],
+) -> Result<Option<Contact>, Unsupported> {
+    let query = ContactQuery {
+        pos12,
+        prediction: Real::MAX,
+    };
+    contact(pos12, shapes[0], shapes[1], Real::MAX)
+        .or_else(|_| convex::visit(shapes, |pair, workspace| query.convex(pair, workspace)))
+}
+
 #[derive(Clone, Copy)]
 struct ContactQuery<'a> {
     pos12: &'a Pose,
