@@ -141,7 +141,7 @@ pub(crate) const ONE_PLANE_COS: f32 = 0.996;
 /// A corner this many times as high above the deepest one as it is far from the other contacts is the last to be
 /// chosen: the body would have to turn by eleven degrees before it touches there. With 0, bodies that lean on an edge
 /// trade its second corner for a far one whenever the deepest corner changes, and heaps of rounded prisms of six sides
-/// rest after 227 frames in place of 108. With 15, rounded prisms of twelve sides rest late.
+/// rest after 227 frames in place of 110. With 15, rounded prisms of twelve sides rest late.
 pub(crate) const CORNER_RISE: f32 = 5.0;
 
 /// A contact this many times as high above the deepest one as it is far from the others is no better than

@@ -127,7 +127,8 @@ impl Candidates {
 
     /// Corners that, with the contact at `first`, span a large area: the farthest from it, the farthest from the
     /// line through both, and the farthest on its other side. None of them is nearer than `same` to another. Low
-    /// corners come first: each counts as nearer by [`CORNER_RISE`] times its height above `level`.
+    /// corners come first: each counts as nearer by [`CORNER_RISE`] times its height above `level`, which is that of
+    /// the first, or above the line.
     #[inline(always)]
     pub fn spread_out(
         &self,
@@ -135,20 +136,29 @@ impl Candidates {
         (first, level): (Vec2, f32),
         same: f32,
     ) -> [Option<usize>; MAX_POINTS - 1] {
-        let reach = Reach { first, level, same };
-        let Some(far) = self.farthest(&reach, 1.0, |x, y| (x * x + y * y).sqrt()) else {
+        // Of four corners all are chosen, and their order stays.
+        let has_choice = corners.count > MAX_POINTS;
+        let mut base = Base {
+            first,
+            level,
+            slope: Vec2::ZERO,
+            rise: if has_choice { CORNER_RISE } else { 0.0 },
+            same,
+        };
+        let Some(far) = self.farthest(&base, 1.0, |x, y| (x * x + y * y).sqrt()) else {
             return [None; MAX_POINTS - 1];
         };
         let line = corners.at(far) - first;
         // The areas over the line are distances times its length.
         let length = line.length();
-        let left = self.farthest(&reach, length, |x, y| y * line.x - x * line.y);
-        let right = self.farthest(&reach, length, |x, y| x * line.y - y * line.x);
+        base.slope = line * ((self.distance(far) - level) / (length * length));
+        let left = self.farthest(&base, length, |x, y| y * line.x - x * line.y);
+        let right = self.farthest(&base, length, |x, y| x * line.y - y * line.x);
         match (left, right) {
             // If the patch is on one side of the line, the last corner adds most area to the triangle.
             (Some(side), None) | (None, Some(side)) => {
                 let apex = corners.at(side) - first;
-                let third = self.farthest(&reach, length, |x, y| added_area(x, y, line, apex));
+                let third = self.farthest(&base, length, |x, y| added_area(x, y, line, apex));
                 [Some(far), Some(side), third]
             }
             (left, right) => [Some(far), left, right],
@@ -160,15 +170,17 @@ impl Candidates {
     #[inline(always)]
     fn farthest(
         &self,
-        reach: &Reach,
+        base: &Base,
         length: f32,
         measure: impl Fn(f32x4, f32x4) -> f32x4,
     ) -> Option<usize> {
         let mut greatest = ArgMax4::new(f32::NEG_INFINITY);
-        let (least, per_height) = (reach.same * length, CORNER_RISE * length);
+        let (least, per_height) = (base.same * length, base.rise * length);
         for (row, four) in self.fours().enumerate() {
-            let far = measure(four.x - reach.first.x, four.y - reach.first.y);
-            let rise = (four.distance - reach.level).fast_max(f32x4::ZERO);
+            let (x, y) = (four.x - base.first.x, four.y - base.first.y);
+            let far = measure(x, y);
+            let level = x * base.slope.x + y * base.slope.y + base.level;
+            let rise = (four.distance - level).fast_max(f32x4::ZERO);
             let is_other = four.near & far.simd_gt(f32x4::splat(least));
             greatest.update_where(is_other, far - rise * per_height, ids(row));
         }
@@ -177,10 +189,14 @@ impl Candidates {
 }
 
 /// From where the other corners are seen.
-struct Reach {
+struct Base {
     /// The first contact, and the distance of the faces there.
     first: Vec2,
     level: f32,
+    /// By how much the distance grows along the line to the second contact.
+    slope: Vec2,
+    /// How much nearer a corner counts for its height.
+    rise: f32,
     /// Corners that are nearer than this count as one.
     same: f32,
 }

@@ -447,7 +447,7 @@ fn both_ends_of_the_edge_that_bears_a_leaning_prism_are_contacts() {
     for sides in [5, 6, 8, 12] {
         let prism = prism(sides, 0.0);
         let half_side = TAU / (2 * sides) as Real;
-        for lean in [0.1, 0.15, 0.2] {
+        for lean in [0.2, 0.25, 0.3] {
             for tip in [-4e-3, 4e-3] {
                 // The edge between the corners 0 and 1 is lowest.
                 let to_edge = Vector::new(half_side.cos(), 0.0, half_side.sin());

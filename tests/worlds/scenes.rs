@@ -120,7 +120,9 @@ fn settled(scene: Scene) -> Option<Settled> {
         // Four millimetres thick, and pressed into each other by a few.
         Scene::Plates | Scene::Needles => (2.0, 0.002),
         // Lying, much thinner than long. Crossed, they overlap by some millimetres.
-        Scene::Pencils | Scene::Rings => (0.4, 0.01),
+        Scene::Pencils => (0.4, 0.01),
+        // Rings fall into each other and are wedged there.
+        Scene::Rings => (1.0, 0.01),
         // A brick or two are wedged between others.
         Scene::Breach => (0.2, 0.05),
         // Held in the air, 0.2 m above the floor, by fingers of 2 cm.
