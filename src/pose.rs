@@ -98,15 +98,11 @@ impl RelativePose {
     /// The rows of the rotation from frame 2 to frame 1, in f32.
     #[inline]
     pub(crate) fn rotation_rows(&self) -> [Vec3; 3] {
-        let [x, y, z] = [
-            self.rotation.x_axis.as_vec3(),
-            self.rotation.y_axis.as_vec3(),
-            self.rotation.z_axis.as_vec3(),
-        ];
+        let rows = self.rotation.transpose();
         [
-            Vec3::new(x.x, y.x, z.x),
-            Vec3::new(x.y, y.y, z.y),
-            Vec3::new(x.z, y.z, z.z),
+            rows.x_axis.as_vec3(),
+            rows.y_axis.as_vec3(),
+            rows.z_axis.as_vec3(),
         ]
     }
 

@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::outline::{Flat, circle_crossings};
+use super::outline::{chord, circle_crossings};
 use super::patch::Patch;
-use super::piece::{Generator, Outline, Piece};
+use super::piece::{Generator, Piece};
 use super::place::by_side;
 use crate::query::Disc;
 
@@ -66,15 +66,13 @@ impl Patch {
         match &self.pieces {
             [Piece::Flat(_), Piece::Line(line)] => self.cross_line(1, line, &mut deepest),
             [Piece::Line(line), Piece::Flat(_)] => self.cross_line(0, line, &mut deepest),
-            [Piece::Flat(a), Piece::Flat(b)] => match (a.outline, b.outline) {
-                (Outline::Disc { .. }, Outline::Disc { .. }) => self.cross_circles(&mut deepest),
-                (Outline::Disc { center, radius }, _) => {
-                    self.cross_polygon(0, (center, radius), &mut deepest);
+            [Piece::Flat(a), Piece::Flat(b)] => match [a, b].map(|flat| flat.outline.circle()) {
+                [Some(first), Some(second)] => {
+                    self.cross_circles([first, second], &mut deepest);
                 }
-                (_, Outline::Disc { center, radius }) => {
-                    self.cross_polygon(1, (center, radius), &mut deepest);
-                }
-                _ => {}
+                [Some(circle), None] => self.cross_polygon(0, circle, &mut deepest),
+                [None, Some(circle)] => self.cross_polygon(1, circle, &mut deepest),
+                [None, None] => {}
             },
             _ => {}
         }
@@ -108,23 +106,24 @@ impl Patch {
         }
     }
 
-    fn cross_circles(&self, deepest: &mut DeepestCrossing) {
+    fn cross_circles(
+        &self,
+        [(c1, r1), (c2, r2)]: [(DVec3, f64); 2],
+        deepest: &mut DeepestCrossing,
+    ) {
         let [Some(first), Some(second)] = [self.flat(0), self.flat(1)] else {
-            return;
-        };
-        let [Some((c1, r1)), Some((c2, r2))] = [&first, &second].map(Flat::circle) else {
             return;
         };
         let offset = first.project(c2) - c1;
         let distance = offset.length();
-        let along = 0.5 * (distance + (r1 * r1 - r2 * r2) / distance);
-        let height = (r1 * r1 - along * along).sqrt();
+        let [along, squared] = chord([r1, r2], distance);
+        let half_chord = squared.sqrt();
         // It is NaN for circles that do not cross, as concentric ones.
-        if height.is_nan() || height == 0.0 {
+        if half_chord.is_nan() || half_chord == 0.0 {
             return;
         }
         let way = offset / distance;
-        let beside = first.side.normal.cross(way) * height;
+        let beside = first.side.normal.cross(way) * half_chord;
         for sign in [-1.0, 1.0] {
             let on_1 = c1 + way * along + beside * sign;
             let on_2 = second.project(on_1);

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::outline::circle_crossings;
+use super::outline::{chord, circle_crossings};
 use super::patch::Patch;
 use super::piece::{FlatSide, Outline, Piece, across};
 use super::place::{PiecePoint, Spot, by_side};
@@ -163,8 +163,8 @@ impl Patch {
     ) {
         let [u1, u2] =
             flats.map(|flat| way.reject_from_normalized(flat.normal).normalize_or_zero());
-        let along = 0.5 * (distance + (r1 * r1 - r2 * r2) / distance);
-        let half_chord = (r1 * r1 - along * along).max(0.0).sqrt();
+        let [along, squared] = chord([r1, r2], distance);
+        let half_chord = squared.max(0.0).sqrt();
         let beside = flats[0].normal.cross(u1);
         // Slightly inside, so that rounding does not put them outside of either disc.
         let hair = 1.0 - ON_OUTLINE;

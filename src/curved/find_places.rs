@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::patch::{ContactPlace, Found, Patch};
-use super::piece::{Outline, Piece};
+use super::piece::Piece;
 use super::place::Spot;
 use super::surface_pieces::SurfacePieces;
 use crate::stats::Cost;
@@ -148,18 +148,12 @@ impl Patch {
     /// Adds the places where whole pieces overlap.
     fn add_common(&mut self) {
         match self.pieces {
-            [Piece::Flat(a), Piece::Flat(b)] => {
-                let circles = [&a, &b].map(|flat| match flat.outline {
-                    Outline::Disc { center, radius } => Some((center, radius)),
-                    Outline::Polygon(_) => None,
-                });
-                match circles {
-                    [Some(first), Some(second)] => self.add_two_discs([&a, &b], [first, second]),
-                    [Some(circle), None] => self.add_disc(0, &a, circle, true),
-                    [None, Some(circle)] => self.add_disc(1, &b, circle, true),
-                    [None, None] => {}
-                }
-            }
+            [Piece::Flat(a), Piece::Flat(b)] => match [a, b].map(|flat| flat.outline.circle()) {
+                [Some(first), Some(second)] => self.add_two_discs([&a, &b], [first, second]),
+                [Some(circle), None] => self.add_disc(0, &a, circle, true),
+                [None, Some(circle)] => self.add_disc(1, &b, circle, true),
+                [None, None] => {}
+            },
             [Piece::Flat(_), Piece::Line(line)] => self.add_line(1, &line),
             [Piece::Line(line), Piece::Flat(_)] => self.add_line(0, &line),
             [Piece::Line(a), Piece::Line(b)] => self.add_two_lines([&a, &b]),

@@ -49,17 +49,9 @@ impl Flat<'_> {
         (inset >= 0.0).then_some(inset)
     }
 
-    /// The centre and the radius, if the outline is a circle.
-    pub fn circle(&self) -> Option<(DVec3, f64)> {
-        match self.side.outline {
-            Outline::Disc { center, radius } => Some((center, radius)),
-            Outline::Polygon(_) => None,
-        }
-    }
-
     /// A direction of the outline at a point on it.
     pub fn direction_at(&self, p: DVec3) -> DVec3 {
-        if let Some((center, _)) = self.circle() {
+        if let Some((center, _)) = self.side.outline.circle() {
             return self.side.normal.cross(p - center);
         }
         let mut nearest = (f64::INFINITY, DVec3::ZERO);
@@ -111,6 +103,13 @@ impl Flat<'_> {
         }
         (low <= high).then_some([low, high])
     }
+}
+
+/// Where the chord of two circles is: how far from the first centre towards the second, and the square of half of its
+/// length, which is negative if they do not cross.
+pub(super) fn chord([r1, r2]: [f64; 2], distance: f64) -> [f64; 2] {
+    let along = 0.5 * (distance + (r1 * r1 - r2 * r2) / distance);
+    [along, r1 * r1 - along * along]
 }
 
 /// The fractions of `along` at which a line crosses a circle. `from` is where it starts, relative to the centre.

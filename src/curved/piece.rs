@@ -43,6 +43,16 @@ pub enum Outline {
     Polygon(FaceId),
 }
 
+impl Outline {
+    /// The centre and the radius, if it is a circle.
+    pub(super) fn circle(&self) -> Option<(DVec3, f64)> {
+        match *self {
+            Self::Disc { center, radius } => Some((center, radius)),
+            Self::Polygon(_) => None,
+        }
+    }
+}
+
 /// The line of a ruled surface that is extreme along the contact normal.
 #[derive(Clone, Copy, Debug)]
 pub struct Generator {

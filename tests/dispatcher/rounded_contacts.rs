@@ -87,6 +87,24 @@ fn touching(rng: &mut Rng, [a, b]: [&Rounded; 2]) -> ExactPose {
     pose
 }
 
+/// A rounded shape in some turn, a little above a ground at this height or in it.
+fn lying(rng: &mut Rng, round: &Rounded, ground: f64) -> ExactPose {
+    let rotation = rng.rotation();
+    let lowest = -round.core.support(rotation.inverse() * DVec3::NEG_Y);
+    ExactPose {
+        rotation,
+        translation: DVec3::Y * (ground + round.border - lowest + rng.range(-0.02, 0.04)),
+    }
+}
+
+fn assert_on_surface(round: &Rounded, point: Vector, pose: &ExactPose) {
+    let off = off_surface(round, point.as_dvec3());
+    assert!(
+        off <= OFF_SURFACE * scale(round),
+        "{point:?} is {off} off at {pose:?}"
+    );
+}
+
 #[test]
 fn points_over_a_half_space_lie_on_the_rounded_surface() {
     let dispatcher = IsaGjkDispatcher::default();
@@ -94,22 +112,12 @@ fn points_over_a_half_space_lie_on_the_rounded_surface() {
     let ground = SharedShape::halfspace(Vector::Y);
     let mut beside = 0;
     for _ in 0..400 {
-        let shapes = rounded::all(&mut rng, 1.0);
-        let round = &shapes[1];
-        let rotation = rng.rotation();
-        let lowest = -round.core.support(rotation.inverse() * DVec3::NEG_Y);
-        let pose = ExactPose {
-            rotation,
-            translation: DVec3::Y * (round.border - lowest + rng.range(-0.02, 0.04)),
-        };
+        let round = &rounded::all(&mut rng, 1.0)[1];
+        let pose = lying(&mut rng, round, 0.0);
         let shapes = [&ground, &round.shape];
         let manifold = cold_manifold(&dispatcher, &pose.to_f32(), shapes, 0.2).expect("supported");
         for point in &manifold.points {
-            let off = off_surface(round, point.local_p2.as_dvec3());
-            assert!(
-                off <= OFF_SURFACE * scale(round),
-                "{point:?} is {off} off at {pose:?}"
-            );
+            assert_on_surface(round, point.local_p2, &pose);
             let height = pose.apply(point.local_p2.as_dvec3()).y;
             assert!((height - f64::from(point.dist)).abs() < OFF_SURFACE * scale(round));
         }
@@ -135,14 +143,8 @@ fn points_along_corrected_normals_lie_on_the_rounded_surface() {
     let ground = SharedShape::cuboid(4.0, 1.0, 4.0);
     let mut beside = 0;
     for _ in 0..400 {
-        let shapes = rounded::all(&mut rng, 1.0);
-        let round = &shapes[1];
-        let rotation = rng.rotation();
-        let lowest = -round.core.support(rotation.inverse() * DVec3::NEG_Y);
-        let pose = ExactPose {
-            rotation,
-            translation: DVec3::Y * (1.0 - lowest + round.border + rng.range(-0.02, 0.04)),
-        };
+        let round = &rounded::all(&mut rng, 1.0)[1];
+        let pose = lying(&mut rng, round, 1.0);
         let leaning = Rotation::from_scaled_axis(rng.direction().as_vec3() * 0.1) * Vector::Y;
         let constraints: [Option<&dyn NormalConstraints>; 2] = [Some(&Only(leaning)), None];
         let mut manifold = Manifold::new();
@@ -156,11 +158,7 @@ fn points_along_corrected_normals_lie_on_the_rounded_surface() {
             )
             .expect("supported");
         for point in &manifold.points {
-            let off = off_surface(round, point.local_p2.as_dvec3());
-            assert!(
-                off <= OFF_SURFACE * scale(round),
-                "{point:?} is {off} off at {pose:?}"
-            );
+            assert_on_surface(round, point.local_p2, &pose);
         }
         beside += manifold.points.len().saturating_sub(1);
     }

@@ -197,10 +197,14 @@ impl AdjacencyMatrix {
         }
     }
 
-    /// The face of a triangle that [`merge`](Self::merge) found.
+    /// The face of a triangle: itself, unless [`merge`](Self::merge) found another one.
     #[inline]
-    pub fn merged_face_of(&self, triangle: u8) -> u8 {
-        self.merged.face_of[index(triangle)]
+    pub fn face_of(&self, triangle: u8, are_merged: bool) -> u8 {
+        if are_merged {
+            self.merged.face_of[index(triangle)]
+        } else {
+            triangle
+        }
     }
 
     /// The corners of all faces, some of which are these polygons, if all slots are known.

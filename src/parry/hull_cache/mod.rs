@@ -204,7 +204,9 @@ impl HullCache {
         known: Option<usize>,
     ) -> usize {
         // First, so that the new hull takes over its memory, which is in the processor's caches.
-        let place = known.map(|place| self.take_out(place));
+        if let Some(place) = known {
+            self.drop_hull(place);
+        }
         let slot = Slot::new(address, polyhedron);
         self.aging.prepared(slot.key(), slot.bytes());
         self.bytes += slot.bytes();
@@ -214,7 +216,7 @@ impl HullCache {
         }
         self.slots.push(slot);
         let last = self.slots.len() - 1;
-        match place {
+        match known {
             Some(place) => {
                 self.slots.swap(place, last);
                 place
@@ -227,10 +229,9 @@ impl HullCache {
     }
 
     /// Drops the hull in a place, in which the last one stays until another hull is there.
-    fn take_out(&mut self, place: usize) -> usize {
+    fn drop_hull(&mut self, place: usize) {
         let old = self.slots.swap_remove(place);
         self.bytes -= old.bytes();
-        place
     }
 
     /// The hull of a reference from [`find`](Self::find).

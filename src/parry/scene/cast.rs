@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 use parry3d::math::{Pose, Real, Vector};
-use parry3d::query::{ShapeCastHit, ShapeCastOptions, ShapeCastStatus, Unsupported};
+use parry3d::query::{Contact, ShapeCastHit, ShapeCastOptions, ShapeCastStatus, Unsupported};
 use parry3d::shape::Shape;
 
 use crate::curved::SurfacePieces;
 use crate::parry::pair::{Pair, PairVisitor};
-use crate::parry::scene::caller::{CallerProximity, KernelFrame};
+use crate::parry::scene::caller::KernelFrame;
 use crate::parry::scene::contact::contact_of_any;
 use crate::parry::scene::convex;
 use crate::parry::visit;
@@ -143,34 +143,23 @@ impl Cast<'_> {
         } else {
             ShapeCastStatus::Converged
         };
-        Ok(Some(ShapeCastHit {
-            time_of_impact: 0.0,
-            witness1: near.point1,
-            witness2: near.point2,
-            normal1: near.normal1,
-            normal2: near.normal2,
-            status,
-            subshape1: 0,
-            subshape2: 0,
-        }))
+        Ok(Some(hit(0.0, &near, status)))
     }
 }
 
 fn hit_at(impact: &Impact, velocity: DVec3, frame: &KernelFrame<'_>) -> ShapeCastHit {
     let way = velocity * impact.time;
     let near = frame.near(impact.normal, [impact.on_1, impact.on_2 - way], 0.0);
-    hit(impact.time, &near, ShapeCastStatus::Converged)
+    hit(impact.time, &near.contact(), ShapeCastStatus::Converged)
 }
 
-pub(super) fn hit(time: f64, near: &CallerProximity, status: ShapeCastStatus) -> ShapeCastHit {
-    let [witness1, witness2] = near.points.map(|p| p.as_vec3());
-    let [normal1, normal2] = near.normals.map(|n| n.as_vec3());
+pub(super) fn hit(time: f64, near: &Contact, status: ShapeCastStatus) -> ShapeCastHit {
     ShapeCastHit {
         time_of_impact: time as Real,
-        witness1,
-        witness2,
-        normal1,
-        normal2,
+        witness1: near.point1,
+        witness2: near.point2,
+        normal1: near.normal1,
+        normal2: near.normal2,
         status,
         subshape1: 0,
         subshape2: 0,

@@ -147,7 +147,7 @@ impl NonlinearCast {
         let near = CallerProximity::of_proximity(near, frame);
         Ok(Some(ShapeCastHit {
             time_of_impact: not_after(time).max(self.times[0]),
-            ..hit(time, &near, status)
+            ..hit(time, &near.contact(), status)
         }))
     }
 

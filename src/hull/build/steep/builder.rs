@@ -145,7 +145,7 @@ impl SteepBuilder {
             planes.push(plane);
         });
         let faces_outward = |triangle: usize| {
-            let face = index(self.matrix.merged_face_of(triangle as u8));
+            let face = index(self.matrix.face_of(triangle as u8, true));
             let normal = self.planes[face].normal.as_dvec3();
             self.areas.vector(triangle).dot(normal) > 0.0
         };

@@ -2,7 +2,7 @@
 
 use super::around::{EDGES, EdgeBetweenFaces};
 use super::builder::SteepBuilder;
-use crate::hull::build::adjacency::{AdjacencyMatrix, VERTICES, index, row};
+use crate::hull::build::adjacency::{VERTICES, index, row};
 use crate::hull::build::graph::GraphBuilder;
 use crate::hull::faces::HAS_SIMILAR_NEIGHBOR;
 use crate::hull::graph::{BLOCK, EdgeGraph};
@@ -31,16 +31,9 @@ impl SteepBuilder {
     /// ones. Returns how many neighbours there are. `None` if an edge has not got two triangles.
     #[inline]
     fn walk_around<const MERGED: bool>(&mut self, from: u8, edges: &mut usize) -> Option<usize> {
-        let face_of = |matrix: &AdjacencyMatrix, triangle| {
-            if MERGED {
-                matrix.merged_face_of(triangle)
-            } else {
-                triangle
-            }
-        };
         let lowest = self.matrix.lowest_neighbor(from);
         let (mut to, mut left) = (lowest, self.matrix.left(from, lowest));
-        let mut left_face = face_of(&self.matrix, left);
+        let mut left_face = self.matrix.face_of(left, MERGED);
         // Unused slots of the first block.
         self.around.to[..BLOCK].fill(lowest.into());
         self.around.left[..BLOCK].fill(left_face.into());
@@ -48,7 +41,7 @@ impl SteepBuilder {
         for (slot, place) in (0..).zip(0..VERTICES) {
             has_all &= self.matrix.has(to, from);
             let spoke = self.matrix.spoke(from, to, slot);
-            let right_face = face_of(&self.matrix, spoke.right);
+            let right_face = self.matrix.face_of(spoke.right, MERGED);
             self.around.to[place] = to.into();
             self.around.left[place] = left_face.into();
             // Which end is higher is not predictable: otherwise the next edge takes its place.
@@ -90,13 +83,8 @@ impl SteepBuilder {
 
     #[inline(never)]
     fn mark_if_similar(&mut self, edge: EdgeBetweenFaces) {
-        let [left, right] = [edge.left, edge.right].map(|triangle| {
-            if self.has_polygons {
-                index(self.matrix.merged_face_of(triangle))
-            } else {
-                index(triangle)
-            }
-        });
+        let [left, right] = [edge.left, edge.right]
+            .map(|triangle| index(self.matrix.face_of(triangle, self.has_polygons)));
         let normal = |face: usize| self.planes[face].normal.as_dvec3();
         if normal(left).dot(normal(right)) >= CLUSTER_ANGLE_COS {
             self.planes[left].first |= HAS_SIMILAR_NEIGHBOR;
