@@ -5,36 +5,67 @@ use glam::DVec3;
 
 use crate::tolerance::ORIENTATION_ROUNDING;
 
-/// The terms of the determinant: each of its 24 products is a sum of two numbers.
+/// The most terms of a height: of f32 values, 24 products of two terms each; of differences, 6 of four.
 const TERMS: usize = 48;
 
-/// How far `p` lies above a triangle that turns counter-clockwise seen from above, times twice the area
-/// of that triangle.
-///
-/// The sign is exact if all coordinates are f32 values. The value is good up to rounding.
-pub(super) fn height_over([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
-    let (u, v, w) = (b - a, c - a, p - a);
-    let height = u.cross(v).dot(w);
-    let [u, v, w] = [u, v, w].map(DVec3::abs);
-    let products = DVec3::new(
-        u.y * v.z + u.z * v.y,
-        u.z * v.x + u.x * v.z,
-        u.x * v.y + u.y * v.x,
-    );
-    if height.abs() > ORIENTATION_ROUNDING * products.dot(w) {
-        return height;
+/// The plane of a triangle, which turns counter-clockwise seen from above.
+pub(super) struct ExactPlane {
+    corners: [DVec3; 3],
+    /// Of twice the triangle's length.
+    normal: DVec3,
+    /// The sums of the products of which the normal is made, which bound its rounding error.
+    products: DVec3,
+}
+
+impl ExactPlane {
+    pub fn new([a, b, c]: [DVec3; 3]) -> Self {
+        let (u, v) = (b - a, c - a);
+        let normal = u.cross(v);
+        let [u, v] = [u, v].map(DVec3::abs);
+        Self {
+            corners: [a, b, c],
+            normal,
+            products: DVec3::new(
+                u.y * v.z + u.z * v.y,
+                u.z * v.x + u.x * v.z,
+                u.x * v.y + u.y * v.x,
+            ),
+        }
     }
-    exact_height([a, b, c], p)
+
+    /// How far a point lies above the plane, times twice the area of the triangle.
+    ///
+    /// The sign is exact if all coordinates are f32 values. The value is good up to rounding.
+    #[inline]
+    pub fn height(&self, p: DVec3) -> f64 {
+        let w = p - self.corners[0];
+        let height = self.normal.dot(w);
+        if height.abs() > ORIENTATION_ROUNDING * self.products.dot(w.abs()) {
+            return height;
+        }
+        exact_height(self.corners, p)
+    }
 }
 
 #[cold]
 fn exact_height([a, b, c]: [DVec3; 3], p: DVec3) -> f64 {
     let mut sum = ExactSum::default();
-    sum.add_determinant(b, c, p);
-    sum.add_determinant(-a, c, p);
-    sum.add_determinant(a, b, p);
-    sum.add_determinant(-a, b, c);
+    match [b, c, p].map(|q| exact_difference(q, a)) {
+        [Some(u), Some(v), Some(w)] => sum.add_determinant(u, v, w),
+        _ => {
+            sum.add_determinant(b, c, p);
+            sum.add_determinant(-a, c, p);
+            sum.add_determinant(a, b, p);
+            sum.add_determinant(-a, b, c);
+        }
+    }
     sum.largest()
+}
+
+/// The difference, if f64 holds it: of f32 values it does, unless they differ by many orders of magnitude.
+fn exact_difference(p: DVec3, q: DVec3) -> Option<DVec3> {
+    let is_exact = |i: usize| two_sum(p[i], -q[i]).1 == 0.0;
+    (is_exact(0) && is_exact(1) && is_exact(2)).then(|| p - q)
 }
 
 /// A sum as non-overlapping numbers, ordered by magnitude.
@@ -60,15 +91,22 @@ impl ExactSum {
         }
     }
 
-    /// A product of three f32 values, as two f64: the product of two of them fits into one.
+    /// Adds a product of three numbers: up to four terms.
     fn add_product(&mut self, a: f64, b: f64, c: f64) {
-        let pair = a * b;
-        let product = pair * c;
-        self.add(pair.mul_add(c, -product));
-        self.add(product);
+        let (pair, error) = two_product(a, b);
+        for part in [error, pair] {
+            if part != 0.0 {
+                let (product, error) = two_product(part, c);
+                self.add(error);
+                self.add(product);
+            }
+        }
     }
 
     fn add(&mut self, mut x: f64) {
+        if x == 0.0 {
+            return;
+        }
         let mut kept = 0;
         for i in 0..self.len {
             let (sum, error) = two_sum(x, self.terms[i]);
@@ -89,6 +127,12 @@ impl ExactSum {
     fn largest(&self) -> f64 {
         self.terms[..self.len].last().copied().unwrap_or(0.0)
     }
+}
+
+/// A product and its rounding error.
+fn two_product(a: f64, b: f64) -> (f64, f64) {
+    let product = a * b;
+    (product, a.mul_add(b, -product))
 }
 
 /// A sum and its rounding error (Knuth, *The Art of Computer Programming* 2, 4.2.2).
@@ -114,7 +158,7 @@ mod tests {
         ];
         let inside = place(m - 3.0, m + 1.0, m + 1.0).y;
         assert_eq!(inside, f64::from(m) + 1.0);
-        let sign = |p: DVec3| height_over(plane, p);
+        let sign = |p: DVec3| ExactPlane::new(plane).height(p);
         assert_eq!(sign(place(m - 2.0, m + 1.0, m + 1.0)), 0.0);
         let tiny = f32::from_bits(1);
         let above = sign(place(m - 2.0, m + 1.0, m + 1.0) + DVec3::X * f64::from(tiny));
@@ -125,13 +169,14 @@ mod tests {
             place(1.0, 2.0, 5.0),
         ];
         let on = place(m, m, 3.0 * m);
-        let exact = height_over(flat, place(3.0, 4.0, 11.0));
+        let over_flat = |p: DVec3| ExactPlane::new(flat).height(p);
+        let exact = over_flat(place(3.0, 4.0, 11.0));
         assert_eq!(exact, 0.0);
         assert_eq!(
-            height_over(flat, on).signum(),
+            over_flat(on).signum(),
             (f64::from(3.0 * m) - 3.0 * f64::from(m)).signum()
         );
-        assert!(height_over(flat, place(0.0, 0.0, tiny)) > 0.0);
-        assert!(height_over(flat, place(0.0, 0.0, -tiny)) < 0.0);
+        assert!(over_flat(place(0.0, 0.0, tiny)) > 0.0);
+        assert!(over_flat(place(0.0, 0.0, -tiny)) < 0.0);
     }
 }

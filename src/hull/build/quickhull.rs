@@ -7,7 +7,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::orientation::height_over;
+use super::orientation::ExactPlane;
 use super::validate::MAX_VERTICES;
 use crate::at::At;
 use crate::hull::HullError;
@@ -40,6 +40,7 @@ pub(super) fn convex_hull(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>),
 struct HullFacet {
     /// Counter-clockwise from outside.
     vertices: [u32; 3],
+    plane: ExactPlane,
     /// The facets beyond the sides from each vertex to the next.
     beyond: [u32; 3],
     /// Its outside set: points above it. Each point is assigned to one of the facets that it is above.
@@ -50,9 +51,10 @@ struct HullFacet {
 }
 
 impl HullFacet {
-    fn new(vertices: [u32; 3], beyond: [u32; 3]) -> Self {
+    fn new(points: &[DVec3], vertices: [u32; 3], beyond: [u32; 3]) -> Self {
         Self {
             vertices,
+            plane: ExactPlane::new(vertices.map(|v| points.at(v))),
             beyond,
             above: Vec::new(),
             peak: (0.0, 0),
@@ -76,46 +78,47 @@ struct GrowingHull<'a> {
     starting_at: Vec<u32>,
 }
 
+/// The greatest of the measures of points, and the first point that has it.
+fn farthest(points: &[DVec3], measure: impl Fn(DVec3) -> f64) -> (f64, usize) {
+    let measured = points.iter().map(|&p| measure(p)).zip(0..);
+    measured.fold((f64::NEG_INFINITY, 0), |best, next| {
+        if next.0 > best.0 { next } else { best }
+    })
+}
+
 impl<'a> GrowingHull<'a> {
     fn tetrahedron(points: &'a [DVec3]) -> Result<Self, HullError> {
-        let farthest = |measure: &dyn Fn(DVec3) -> f64| {
-            let measured = (0..points.len()).map(|i| (measure(points[i]), i));
-            measured.fold((f64::NEG_INFINITY, 0), |best, next| {
-                if next.0 > best.0 { next } else { best }
-            })
-        };
-        let a = farthest(&|p| -p.x).1;
-        let b = farthest(&|p| p.distance_squared(points[a])).1;
+        let a = farthest(points, |p| -p.x).1;
+        let b = farthest(points, |p| p.distance_squared(points[a])).1;
         let along = points[b] - points[a];
-        let c = farthest(&|p| along.cross(p - points[a]).length_squared()).1;
-        let base = [a, b, c].map(|v| points[v]);
-        let (height, d) = farthest(&|p| height_over(base, p).abs());
+        let c = farthest(points, |p| along.cross(p - points[a]).length_squared()).1;
+        let base = ExactPlane::new([a, b, c].map(|v| points[v]));
+        let (height, d) = farthest(points, |p| base.height(p).abs());
         if height == 0.0 {
             return Err(HullError::Flat);
         }
-        let is_beneath = height_over(base, points[d]) < 0.0;
+        let is_beneath = base.height(points[d]) < 0.0;
         let [b, c] = if is_beneath { [b, c] } else { [c, b] };
         let [a, b, c, d] = [a, b, c, d].map(|v| v as u32);
         let mut surface = Self {
             points,
             facets: vec![
-                HullFacet::new([a, b, c], [1, 2, 3]),
-                HullFacet::new([a, d, b], [3, 2, 0]),
-                HullFacet::new([b, d, c], [1, 3, 0]),
-                HullFacet::new([c, d, a], [2, 1, 0]),
+                HullFacet::new(points, [a, b, c], [1, 2, 3]),
+                HullFacet::new(points, [a, d, b], [3, 2, 0]),
+                HullFacet::new(points, [b, d, c], [1, 3, 0]),
+                HullFacet::new(points, [c, d, a], [2, 1, 0]),
             ],
             vertex_count: 4,
             starting_at: vec![0; points.len()],
         };
-        for point in 0..points.short_len() {
+        for point in (0..points.short_len()).filter(|point| ![a, b, c, d].contains(point)) {
             surface.assign(point, 0);
         }
         Ok(surface)
     }
 
     fn height(&self, facet: u32, point: u32) -> f64 {
-        let at = |v: u32| self.points.at(v);
-        height_over(self.facet(facet).vertices.map(at), at(point))
+        self.facet(facet).plane.height(self.points.at(point))
     }
 
     fn facet_count(&self) -> u32 {
@@ -164,7 +167,8 @@ impl<'a> GrowingHull<'a> {
                 for &facet in &seen {
                     unassigned.append(&mut self.facet_mut(facet).above);
                 }
-                for point in unassigned.drain(..) {
+                // The eye is a corner now.
+                for point in unassigned.drain(..).filter(|&point| point != eye) {
                     self.assign(point, first);
                 }
             }
@@ -215,7 +219,7 @@ impl<'a> GrowingHull<'a> {
     fn close(&mut self, eye: u32, horizon: &[HorizonEdge]) -> u32 {
         let first = self.facet_count();
         for (id, edge) in (first..).zip(horizon) {
-            let facet = HullFacet::new([edge.from, edge.to, eye], [edge.beyond, 0, 0]);
+            let facet = HullFacet::new(self.points, [edge.from, edge.to, eye], [edge.beyond, 0, 0]);
             self.facets.push(facet);
             *self.starting_at.at_mut(edge.from) = id;
             let other = self.facet_mut(edge.beyond);
