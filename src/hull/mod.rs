@@ -13,7 +13,7 @@ mod lists;
 mod scan;
 mod start_table;
 
-pub(crate) use build::solid::{surface_of_points, validate_surface};
+pub(crate) use build::solid::{bends_everywhere, surface_of_points};
 pub use error::HullError;
 
 use glam::{DVec3, Vec3};

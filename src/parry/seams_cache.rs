@@ -10,7 +10,7 @@ use std::sync::Arc;
 use parry3d::math::Pose;
 use parry3d::shape::{Compound, CompoundPseudoNormals, SharedShape};
 
-use crate::parry::hull_shape::HullShape;
+use crate::parry::hull_shape::plain;
 use crate::parry::int_hash::IntMap;
 
 /// The pseudo-normals of each part that has any.
@@ -57,10 +57,6 @@ impl SeamsCache {
 impl Known {
     #[cold]
     fn new(compound: &Compound) -> Self {
-        let plain = |part: &SharedShape| match part.as_shape().map(HullShape::polyhedron) {
-            Some(polyhedron) => SharedShape::new(polyhedron.clone()),
-            None => part.clone(),
-        };
         let parts = compound.shapes();
         let twins = parts.iter().map(|(pos, part)| (*pos, plain(part)));
         let twin = Compound::with_flags(twins.collect(), compound.flags(), None);
@@ -89,6 +85,7 @@ mod tests {
     use parry3d::shape::CompoundFlags;
 
     use super::*;
+    use crate::parry::hull_shape::HullShape;
 
     fn cubes(distance: f32) -> Compound {
         let corner = |i: u32| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32);

@@ -6,27 +6,16 @@ use std::ops::Range;
 use glam::{DVec3, Vec3};
 use parry3d::shape::ConvexPolyhedron;
 
-use super::flat_sides::{SideBorder, from_lowest, side_normal, triangle_strip};
+use super::flat_sides::{FlatFaces, SideBorder, from_lowest, side_normal};
 use crate::at::At;
 use crate::hull::lists::Rows;
 use crate::tuning::SEEMS_FLAT;
-
-/// The faces of a polyhedron.
-pub(super) struct FlatFaces {
-    /// The triangles of all faces, with diagonals that depend only on the points.
-    pub triangles: Vec<[u32; 3]>,
-    /// The faces with more than three corners, each from its lowest corner.
-    pub polygons: Rows<u32>,
-}
 
 impl FlatFaces {
     /// `None` if the faces are not the flat sides of the polyhedron.
     pub fn of(polyhedron: &ConvexPolyhedron, points: &[DVec3], radius: f64) -> Option<Self> {
         let (faces, corners) = (polyhedron.faces(), polyhedron.vertices_adj_to_face());
-        let mut flat = Self {
-            triangles: Vec::with_capacity((2 * points.len()).checked_sub(4)?),
-            polygons: Rows::with_capacity(faces.len(), corners.len()),
-        };
+        let mut flat = Self::with_capacity(points.len(), faces.len(), corners.len())?;
         // The border of the first of the two sides along each edge.
         let mut borders: Vec<Option<SideBorder>> = vec![None; polyhedron.edges().len()];
         let mut open = 0_usize;
@@ -52,17 +41,9 @@ impl FlatFaces {
                     }
                 }
             }
-            flat.triangles.extend(triangle_strip(&polygon));
-            if polygon.len() > 3 {
-                flat.polygons.push(polygon.iter().copied());
-            }
+            flat.push(&polygon);
         }
         (open == 0).then_some(flat)
-    }
-
-    /// The triangles in the order of their corners.
-    pub fn sorted(&self, corners: usize) -> Option<Vec<[u32; 3]>> {
-        sorted(&self.triangles, corners)
     }
 }
 
@@ -123,18 +104,11 @@ impl FaceTriangles {
             seem_flat,
         })
     }
-
-    /// Each from its lowest corner, in the order of their corners. `None` if there is no such corner.
-    pub fn sorted(self, corners: usize) -> Option<Self> {
-        Some(Self {
-            triangles: sorted(&self.triangles, corners)?,
-            ..self
-        })
-    }
 }
 
-/// Triangles in the order of their corners. `None` if a first corner is not below `corners`.
-fn sorted(triangles: &[[u32; 3]], corners: usize) -> Option<Vec<[u32; 3]>> {
+/// Triangles, each from its lowest corner, in the order of their corners. `None` if a lowest corner is not below
+/// `corners`.
+pub(super) fn sorted(triangles: &[[u32; 3]], corners: usize) -> Option<Vec<[u32; 3]>> {
     let mut rows = Rows::by_key(
         corners,
         triangles
@@ -256,13 +230,13 @@ mod tests {
         let mut told = 0;
         for points in &clouds {
             let polyhedron = ConvexPolyhedron::from_convex_hull(points).expect("a hull");
-            let faces = FaceTriangles::of(&polyhedron);
-            let Some(faces) = faces.and_then(|faces| faces.sorted(polyhedron.points().len()))
-            else {
+            let Some(faces) = FaceTriangles::of(&polyhedron) else {
                 continue;
             };
             told += 1;
-            assert_eq!(Some(faces.triangles), triangles_of_edges(&polyhedron));
+            let triangles = sorted(&faces.triangles, polyhedron.points().len());
+            assert!(triangles.is_some());
+            assert_eq!(triangles, triangles_of_edges(&polyhedron));
         }
         assert!(told >= 11, "only {told} of {} are told", clouds.len());
     }

@@ -9,25 +9,45 @@ use glam::DVec3;
 
 use super::half_edge::{HalfEdge, HalfEdgeMesh, next, triangle as triangle_of};
 use crate::at::At;
+use crate::hull::lists::Rows;
 use crate::tolerance::{BENT_EDGE, FLAT_EDGE, FLAT_SIDE};
 
-/// The triangles of a surface, in an order and with diagonals that depend only on its vertices. `None` if
-/// this cannot be guaranteed: a side is not a strictly convex polygon, or it is hardly flat, or hardly bent
-/// at its border.
-pub(in crate::hull) fn retriangulated(
-    points: &[DVec3],
-    triangles: &[[u32; 3]],
-    radius: f64,
-) -> Option<Vec<[u32; 3]>> {
-    let mesh = HalfEdgeMesh::new(points.len(), triangles).ok()?;
-    let sides = Sides::new(points, &mesh, radius)?;
-    let mut all: Vec<[u32; 3]> = sides
-        .polygons
-        .iter()
-        .flat_map(|side| triangle_strip(side))
-        .collect();
-    all.sort_unstable();
-    Some(all)
+/// A surface by its flat sides.
+pub(super) struct FlatFaces {
+    /// The triangles of all faces, with diagonals that depend only on the points.
+    pub triangles: Vec<[u32; 3]>,
+    /// The faces with more than three corners, each from its lowest corner.
+    pub polygons: Rows<u32>,
+}
+
+impl FlatFaces {
+    /// Without faces yet, but with room for them. `None` if there are not enough points for a solid.
+    pub fn with_capacity(points: usize, faces: usize, corners: usize) -> Option<Self> {
+        Some(Self {
+            triangles: Vec::with_capacity((2 * points).checked_sub(4)?),
+            polygons: Rows::with_capacity(faces, corners),
+        })
+    }
+
+    /// The sides of a triangulated surface. `None` if they are ambiguous: a side is not a strictly convex polygon,
+    /// or it is hardly flat, or hardly bent at its border.
+    pub fn of_triangles(points: &[DVec3], triangles: &[[u32; 3]], radius: f64) -> Option<Self> {
+        let mesh = HalfEdgeMesh::new(points.len(), triangles).ok()?;
+        let sides = Sides::new(points, &mesh, radius)?;
+        let mut flat = Self::with_capacity(points.len(), sides.polygons.len(), triangles.len())?;
+        for polygon in &sides.polygons {
+            flat.push(polygon);
+        }
+        Some(flat)
+    }
+
+    /// Adds a face, which begins at its lowest corner.
+    pub fn push(&mut self, polygon: &[u32]) {
+        self.triangles.extend(triangle_strip(polygon));
+        if polygon.len() > 3 {
+            self.polygons.push(polygon.iter().copied());
+        }
+    }
 }
 
 /// The flat polygons of a surface.
@@ -195,7 +215,7 @@ impl SideBorder {
 
 /// The triangle strip of a polygon that begins at its lowest corner, each triangle starting at its lowest corner.
 /// Triangles are cut off from both ends in turn, so that no corner has many of them.
-pub(super) fn triangle_strip(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+fn triangle_strip(polygon: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let (mut low, mut high) = (0, polygon.len() - 1);
     let mut is_low = false;
     std::iter::from_fn(move || {

@@ -3,6 +3,7 @@
 mod adjacency;
 mod area_vectors;
 mod bends;
+pub(crate) mod canonical;
 mod face_loops;
 mod face_plane;
 mod faces;

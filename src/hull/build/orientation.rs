@@ -4,6 +4,7 @@
 use glam::DVec3;
 
 use crate::tolerance::ORIENTATION_ROUNDING;
+use crate::tuning::SEEMS_FLAT;
 
 /// The most terms of a height: of f32 values, 24 products of two terms each; of differences, 6 of four.
 const TERMS: usize = 48;
@@ -44,6 +45,12 @@ impl ExactPlane {
             return height;
         }
         exact_height(self.corners, p)
+    }
+
+    /// Whether a point of a known height seems to be in the plane, seen from the triangle.
+    pub fn seems_to_contain(&self, p: DVec3, height: f64) -> bool {
+        let away = self.normal.length_squared() * p.distance_squared(self.corners[0]);
+        height * height <= SEEMS_FLAT * SEEMS_FLAT * away
     }
 }
 

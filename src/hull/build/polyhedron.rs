@@ -7,13 +7,13 @@
 
 use std::cmp::Ordering;
 
-use glam::{DVec2, DVec3, Vec3};
+use glam::{DVec2, DVec3};
 use parry3d::shape::ConvexPolyhedron;
 
-use super::face_loops::{FaceTriangles, FlatFaces, has_flat_sides};
-use super::flat_sides;
+use super::canonical::{around_middle, canonical_hull, hull_of_flat_faces};
+use super::face_loops::{FaceTriangles, has_flat_sides, sorted};
+use super::flat_sides::FlatFaces;
 use super::identity::Diagonals;
-use super::steep::steep_hull;
 use super::validate::MAX_VERTICES;
 use crate::at::At;
 use crate::hull::lists::Rows;
@@ -58,21 +58,14 @@ pub(crate) fn hull_of_surface(polyhedron: &ConvexPolyhedron) -> Option<(Hull, Di
     }
     let faces = FaceTriangles::of(polyhedron);
     if let Some(faces) = &faces
-        && !faces.seem_flat
-        && let Some(hull) = steep_hull(points, &faces.triangles, &Rows::default())
-    {
-        return Some((hull, Diagonals::default()));
-    }
-    let faces = faces.and_then(|faces| faces.sorted(points.len()));
-    if let Some(faces) = &faces
-        && let Some(hull) = of_faces(points, faces)
+        && let Some(hull) = canonical_hull(points, &faces.triangles, faces.seem_flat)
     {
         return Some((hull, Diagonals::default()));
     }
     let surface = Triangulation::of(polyhedron)?;
     if faces.is_none()
         && !surface.flat_edges.is_empty()
-        && let Some(hull) = with_own_diagonals(points, &surface.triangles, surface.radius)
+        && let Some(hull) = canonical_hull(points, &surface.triangles, true)
     {
         return Some((hull, Diagonals::default()));
     }
@@ -91,46 +84,14 @@ fn of_flat_sides(polyhedron: &ConvexPolyhedron) -> Option<Hull> {
     }
     let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
     let faces = FlatFaces::of(polyhedron, &exact, around_middle(points).1)?;
-    steep_hull(points, &faces.triangles, &faces.polygons).or_else(|| {
-        let triangles = faces.sorted(points.len())?;
-        Hull::from_reordered_triangles(points.to_vec(), &triangles).ok()
-    })
-}
-
-/// The hull, if it depends only on the points: each edge bends, or is a diagonal of a flat side.
-fn of_faces(points: &[Vec3], faces: &FaceTriangles) -> Option<Hull> {
-    if !faces.seem_flat
-        && let Ok(Some(hull)) = Hull::from_bent_triangles(points.to_vec(), &faces.triangles)
-    {
-        return Some(hull);
-    }
-    if !points.iter().all(|p| p.is_finite()) {
-        return None;
-    }
-    with_own_diagonals(points, &faces.triangles, around_middle(points).1)
-}
-
-/// The hull with diagonals that depend only on the points, if all flat edges are diagonals of flat sides.
-fn with_own_diagonals(points: &[Vec3], triangles: &[[u32; 3]], radius: f64) -> Option<Hull> {
-    let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
-    let triangles = flat_sides::retriangulated(&exact, triangles, radius)?;
-    Hull::from_reordered_triangles(points.to_vec(), &triangles).ok()
-}
-
-/// The middle of the vertices, which is inside the hull, and the largest distance of a vertex from it.
-fn around_middle(points: &[Vec3]) -> (DVec3, f64) {
-    let middle = points.iter().map(|p| p.as_dvec3()).sum::<DVec3>() / points.len() as f64;
-    let squares = points.iter().map(|p| p.as_dvec3().distance_squared(middle));
-    (middle, squares.fold(0.0, f64::max).sqrt())
+    hull_of_flat_faces(points, &faces)
 }
 
 /// The triangles of a polyhedron, counter-clockwise from outside; `None` if they are ambiguous.
 pub(crate) fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
     let faces = FaceTriangles::of(polyhedron);
-    match faces.and_then(|faces| faces.sorted(polyhedron.points().len())) {
-        Some(faces) => Some(faces.triangles),
-        None => triangles_of_edges(polyhedron),
-    }
+    let sorted = faces.and_then(|faces| sorted(&faces.triangles, polyhedron.points().len()));
+    sorted.or_else(|| triangles_of_edges(polyhedron))
 }
 
 /// The same by the edges alone.
@@ -143,8 +104,6 @@ struct Triangulation {
     triangles: Vec<[u32; 3]>,
     /// The edges across which the surface hardly bends.
     flat_edges: Vec<u32>,
-    /// Around a point inside.
-    radius: f64,
 }
 
 impl Triangulation {
@@ -179,7 +138,6 @@ impl Triangulation {
         Some(Self {
             triangles,
             flat_edges,
-            radius,
         })
     }
 }

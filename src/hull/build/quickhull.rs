@@ -12,15 +12,25 @@ use super::validate::MAX_VERTICES;
 use crate::at::At;
 use crate::hull::HullError;
 
-/// The corners of the hull in the order of the points, and its triangles, counter-clockwise from outside.
+/// The triangulated surface of a hull.
+pub(crate) struct HullTriangles {
+    /// The corners, in the order of the points.
+    pub vertices: Vec<Vec3>,
+    /// Counter-clockwise from outside.
+    pub triangles: Vec<[u32; 3]>,
+    /// Whether some of them seem to be in one plane.
+    pub seem_flat: bool,
+}
+
+/// The hull of finite points.
 ///
 /// # Errors
 /// If the points lie in a plane, or more of them are corners than a hull may have.
-pub(super) fn convex_hull(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
+pub(super) fn convex_hull(points: &[Vec3]) -> Result<HullTriangles, HullError> {
     let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
     let mut surface = GrowingHull::tetrahedron(&exact)?;
     surface.grow()?;
-    let bends = surface.bends();
+    let (bends, seem_flat) = surface.bends();
     // At a point in a flat side or on a straight edge, fewer than three edges bend.
     let corners: Vec<usize> = (0..points.len()).filter(|&v| bends[v] > 2).collect();
     let vertices: Vec<Vec3> = corners.iter().map(|&v| points[v]).collect();
@@ -33,7 +43,11 @@ pub(super) fn convex_hull(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>),
     }
     let facets = surface.facets.iter().filter(|facet| !facet.is_removed);
     let triangle = |facet: &HullFacet| facet.vertices.map(|v| ids.at(v));
-    Ok((vertices, facets.map(triangle).collect()))
+    Ok(HullTriangles {
+        vertices,
+        triangles: facets.map(triangle).collect(),
+        seem_flat,
+    })
 }
 
 /// A triangle of the surface.
@@ -234,9 +248,9 @@ impl<'a> GrowingHull<'a> {
         first
     }
 
-    /// At how many edges of each vertex the surface bends.
-    fn bends(&self) -> Vec<u32> {
-        let mut bends = vec![0; self.points.len()];
+    /// At how many edges of each vertex the surface bends, and whether it seems to be flat somewhere.
+    fn bends(&self) -> (Vec<u32>, bool) {
+        let (mut bends, mut seems_flat) = (vec![0; self.points.len()], false);
         for (id, facet) in (0..).zip(&self.facets) {
             let others = facet.beyond.iter().enumerate();
             let each_once = |&(_, &other): &(usize, &u32)| !facet.is_removed && id < other;
@@ -244,11 +258,14 @@ impl<'a> GrowingHull<'a> {
                 let ends = [facet.vertices[side], facet.vertices[(side + 1) % 3]];
                 let across = self.facet(other).vertices;
                 let third = across.into_iter().find(|v| !ends.contains(v));
-                if self.height(id, third.expect("it shares only two")) < 0.0 {
+                let third = third.expect("it shares only two");
+                let height = self.height(id, third);
+                if height < 0.0 {
                     ends.iter().for_each(|&v| *bends.at_mut(v) += 1);
                 }
+                seems_flat |= facet.plane.seems_to_contain(self.points.at(third), height);
             }
         }
-        bends
+        (bends, seems_flat)
     }
 }

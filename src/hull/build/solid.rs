@@ -4,13 +4,14 @@ use std::borrow::Cow;
 
 use glam::Vec3;
 
+use super::morton;
+use super::quickhull::{self, HullTriangles};
 use super::surface::Surface;
 use super::validate::validate_finite;
-use super::{morton, quickhull};
 use crate::hull::{Hull, HullError, scan};
 
-/// The vertices and triangles of the hull of a point cloud.
-pub(crate) fn surface_of_points(points: &[Vec3]) -> Result<(Vec<Vec3>, Vec<[u32; 3]>), HullError> {
+/// The surface of the hull of a point cloud.
+pub(crate) fn surface_of_points(points: &[Vec3]) -> Result<HullTriangles, HullError> {
     if points.len() < 4 {
         return Err(HullError::TooFewPoints);
     }
@@ -36,8 +37,8 @@ impl Hull {
     /// # Ok::<(), isa_gjk::HullError>(())
     /// ```
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
-        let (vertices, triangles) = surface_of_points(points)?;
-        Self::from_reordered_triangles(vertices, &triangles)
+        let surface = surface_of_points(points)?;
+        Self::from_reordered_triangles(surface.vertices, &surface.triangles)
     }
 
     /// Like [`from_triangles`](Self::from_triangles), but reorders the vertices for faster climbs.
@@ -74,9 +75,13 @@ impl Hull {
     }
 }
 
-/// Checks what [`Hull::from_triangles`] checks before it looks for faces.
-pub(crate) fn validate_surface(points: Vec<Vec3>, triangles: &[[u32; 3]]) -> Result<(), HullError> {
-    Surface::new(points, triangles).map(|_| ())
+/// Checks what [`Hull::from_triangles`] checks before it looks for faces. Returns whether the surface bends at every
+/// edge.
+pub(crate) fn bends_everywhere(
+    points: Vec<Vec3>,
+    triangles: &[[u32; 3]],
+) -> Result<bool, HullError> {
+    Ok(Surface::new(points, triangles)?.bends_everywhere())
 }
 
 /// The vertices and triangles of a large hull in an order for faster climbs.

@@ -55,6 +55,6 @@ impl<'a> Seams<'a> {
 
 /// The polyhedron of a part that is a hull without a rounded border, for parry's routines.
 fn polyhedron(part: &SharedShape) -> Option<&ConvexPolyhedron> {
-    let prepared = || part.as_shape().map(HullShape::polyhedron);
+    let prepared = || part.as_shape().and_then(HullShape::polyhedron);
     part.as_shape().or_else(prepared)
 }

@@ -47,17 +47,19 @@ mod shape;
 
 pub(crate) use bounds::aabb_of_points;
 pub use prepared::PreparedShapes;
+pub(crate) use prepared::plain;
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::Vec3;
 use parry3d::bounding_volume::Aabb;
+use parry3d::bounding_volume::details::local_point_cloud_aabb_ref;
 use parry3d::mass_properties::MassProperties;
 use parry3d::shape::ConvexPolyhedron;
 
+use crate::hull::build::canonical::canonical_hull;
 use crate::hull::build::polyhedron;
 use crate::hull::{self, Hull, HullError};
-use crate::support::{FaceId, Polytope};
 
 /// A convex hull for colliders, used as `SharedShape::new(hull)`, with everything that our queries need.
 ///
@@ -92,8 +94,8 @@ pub struct HullShape {
 #[derive(Debug)]
 struct Inner {
     hull: Hull,
-    /// The polyhedron that rapier saves, draws and sweeps.
-    polyhedron: ConvexPolyhedron,
+    /// The polyhedron that rapier saves, draws and sweeps, once it is asked for. `None` if parry cannot make it.
+    polyhedron: OnceLock<Option<ConvexPolyhedron>>,
     local_aabb: Aabb,
     /// The mass properties for a density of one.
     mass: MassProperties,
@@ -105,8 +107,8 @@ impl HullShape {
     /// # Errors
     /// [`HullError`] says what is wrong with the points.
     pub fn from_points(points: &[Vec3]) -> Result<Self, HullError> {
-        let (vertices, triangles) = hull::surface_of_points(points)?;
-        Self::from_triangles(vertices, &triangles)
+        let surface = hull::surface_of_points(points)?;
+        Self::from_surface(surface.vertices, &surface.triangles, surface.seem_flat)
     }
 
     /// From the triangulated surface of a convex polytope, counter-clockwise from outside.
@@ -128,22 +130,34 @@ impl HullShape {
     /// # Ok::<(), HullError>(())
     /// ```
     pub fn from_triangles(points: Vec<Vec3>, triangles: &[[u32; 3]]) -> Result<Self, HullError> {
-        // parry's polyhedron trusts its input.
-        hull::validate_surface(points.clone(), triangles)?;
+        let bends = hull::bends_everywhere(points.clone(), triangles)?;
+        Self::from_surface(points, triangles, !bends)
+    }
+
+    /// From a closed surface.
+    fn from_surface(
+        points: Vec<Vec3>,
+        triangles: &[[u32; 3]],
+        seems_flat: bool,
+    ) -> Result<Self, HullError> {
+        if let Some(hull) = canonical_hull(&points, triangles, seems_flat) {
+            return Ok(Self::new(hull, OnceLock::new()));
+        }
+        // The hull may depend on the diagonals of flat sides, so it is made from those of the polyhedron.
         let polyhedron = ConvexPolyhedron::from_convex_mesh(points.clone(), triangles)
             .ok_or(HullError::BuilderFailed)?;
         if let Some((hull, _)) = polyhedron::hull_of_surface(&polyhedron) {
-            return Ok(Self::new(polyhedron, hull));
+            return Ok(Self::new(hull, OnceLock::from(Some(polyhedron))));
         }
         // It may still be no hull, for reasons that only its faces show.
         Hull::from_triangles(points, triangles)?;
         polyhedron.try_into()
     }
 
-    fn new(polyhedron: ConvexPolyhedron, hull: Hull) -> Self {
+    fn new(hull: Hull, polyhedron: OnceLock<Option<ConvexPolyhedron>>) -> Self {
         let inner = Inner {
-            local_aabb: polyhedron.local_aabb(),
-            mass: MassProperties::from_convex_polyhedron(1.0, hull.points(), &triangles(&hull)),
+            local_aabb: local_point_cloud_aabb_ref(hull.points()),
+            mass: MassProperties::from_convex_polyhedron(1.0, hull.points(), &hull.triangles()),
             hull,
             polyhedron,
         };
@@ -154,9 +168,8 @@ impl HullShape {
 
     /// The hull with each coordinate multiplied by that of `scale`; `None` if the result is flat.
     fn scaled(&self, scale: Vec3) -> Option<Self> {
-        let polyhedron = &self.inner.polyhedron;
-        let points: Vec<Vec3> = polyhedron.points().iter().map(|p| *p * scale).collect();
-        let mut triangles = polyhedron::triangles(polyhedron)?;
+        let points: Vec<Vec3> = self.hull().points().iter().map(|p| *p * scale).collect();
+        let mut triangles = self.hull().triangles();
         if scale.element_product() < 0.0 {
             // In a mirror image, triangles turn the other way.
             triangles.iter_mut().for_each(|t| t.swap(1, 2));
@@ -171,9 +184,11 @@ impl HullShape {
         &self.inner.hull
     }
 
-    /// What parry takes it for.
-    pub(crate) fn polyhedron(&self) -> &ConvexPolyhedron {
-        &self.inner.polyhedron
+    /// What parry takes it for; `None` if parry cannot make that.
+    pub(crate) fn polyhedron(&self) -> Option<&ConvexPolyhedron> {
+        let hull = self.hull();
+        let make = || ConvexPolyhedron::from_convex_mesh(hull.points().to_vec(), &hull.triangles());
+        self.inner.polyhedron.get_or_init(make).as_ref()
     }
 }
 
@@ -199,15 +214,6 @@ impl TryFrom<ConvexPolyhedron> for HullShape {
         // Built from the polyhedron even if the triangles are known. The dispatcher does the same with the
         // plain hull of a loaded world, so feature ids stay the same.
         let hull = Hull::try_from(&polyhedron)?;
-        Ok(Self::new(polyhedron, hull))
+        Ok(Self::new(hull, OnceLock::from(Some(polyhedron))))
     }
-}
-
-/// The faces of a hull as triangle fans.
-fn triangles(hull: &Hull) -> Vec<[u32; 3]> {
-    let fan = |face: FaceId| {
-        let corner = move |i| hull.face_vertex(face, i).into();
-        (2..hull.face_len(face)).map(move |i| [corner(0), corner(i - 1), corner(i)])
-    };
-    hull.face_ids().flat_map(fan).collect()
 }

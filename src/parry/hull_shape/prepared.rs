@@ -86,7 +86,8 @@ impl PreparedShapes {
         let alike = self.hulls.entry(fingerprint(polyhedron)).or_default();
         let of_this = |shape: &&SharedShape| {
             let hull = shape.as_shape::<HullShape>();
-            hull.is_some_and(|hull| same_polyhedron(&hull.inner.polyhedron, polyhedron))
+            let known = hull.and_then(HullShape::polyhedron);
+            known.is_some_and(|known| same_polyhedron(known, polyhedron))
         };
         if let Some(known) = alike.iter().find(of_this) {
             return Some(known.clone());
@@ -123,9 +124,10 @@ fn with_parts(
 }
 
 /// A plain hull in place of a `HullShape`; other shapes as they are.
-fn plain(part: &SharedShape) -> SharedShape {
-    match part.as_shape::<HullShape>() {
-        Some(hull) => SharedShape::new(hull.inner.polyhedron.clone()),
+pub(crate) fn plain(part: &SharedShape) -> SharedShape {
+    let hull = part.as_shape::<HullShape>();
+    match hull.and_then(HullShape::polyhedron) {
+        Some(polyhedron) => SharedShape::new(polyhedron.clone()),
         None => part.clone(),
     }
 }

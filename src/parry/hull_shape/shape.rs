@@ -2,6 +2,7 @@
 
 use std::f32::consts::FRAC_PI_4;
 
+use parry3d::bounding_volume::details::point_cloud_bounding_sphere;
 use parry3d::bounding_volume::{Aabb, BoundingSphere};
 use parry3d::mass_properties::MassProperties;
 use parry3d::math::{Pose, Real, Vector};
@@ -17,7 +18,7 @@ impl Shape for HullShape {
     }
 
     fn compute_local_bounding_sphere(&self) -> BoundingSphere {
-        self.inner.polyhedron.local_bounding_sphere()
+        point_cloud_bounding_sphere(self.hull().points())
     }
 
     fn compute_aabb(&self, position: &Pose) -> Aabb {
@@ -44,7 +45,10 @@ impl Shape for HullShape {
     }
 
     fn as_typed_shape(&self) -> TypedShape<'_> {
-        TypedShape::ConvexPolyhedron(&self.inner.polyhedron)
+        match self.polyhedron() {
+            Some(polyhedron) => TypedShape::ConvexPolyhedron(polyhedron),
+            None => TypedShape::Custom(self),
+        }
     }
 
     fn ccd_thickness(&self) -> Real {

@@ -4,8 +4,9 @@ use std::f32::consts::TAU;
 use glam::{DVec3, EulerRot, Quat};
 use parry3d::shape::ConvexPolyhedron;
 
-use crate::hull::build::face_loops::FlatFaces;
-use crate::hull::build::flat_sides::from_lowest;
+use crate::hull::build::canonical::canonical_hull;
+use crate::hull::build::face_loops::sorted;
+use crate::hull::build::flat_sides::{FlatFaces, from_lowest};
 use crate::hull::build::surface::Surface;
 use crate::hull::surface_of_points;
 
@@ -52,7 +53,8 @@ fn hulls_are_the_same_as_by_all_passes() {
         let count = 4 + round % 61;
         let stretch = [Vec3::ONE, Vec3::new(1.0, 0.05, 0.3), Vec3::splat(1e-3)][round % 3];
         let points: Vec<Vec3> = ball(&mut rng, count).iter().map(|&p| p * stretch).collect();
-        let (points, mut triangles) = surface_of_points(&points).expect("a solid");
+        let surface = surface_of_points(&points).expect("a solid");
+        let (points, mut triangles) = (surface.vertices, surface.triangles);
         let any_order = shuffled(&mut rng, &triangles);
         let Some(hull) = steep_hull(&points, &any_order, &Rows::default()) else {
             continue;
@@ -75,7 +77,8 @@ fn surfaces_that_are_not_convex_are_left_alone() {
     let mut rng = oorandom::Rand64::new(12);
     for round in 0..200 {
         let points = ball(&mut rng, 8 + round % 50);
-        let (points, triangles) = surface_of_points(&points).expect("a solid");
+        let surface = surface_of_points(&points).expect("a solid");
+        let (points, triangles) = (surface.vertices, surface.triangles);
         let mut wrong = triangles.clone();
         let some = below(&mut rng, wrong.len());
         let [a, b, c] = wrong[some];
@@ -136,9 +139,49 @@ fn hulls_with_flat_sides_are_the_same_as_by_all_passes() {
             continue;
         };
         built += 1;
-        let triangles = faces.sorted(points.len()).expect("corners");
+        let triangles = sorted(&faces.triangles, points.len()).expect("corners");
         let other = Surface::new(points, &triangles).and_then(Surface::into_hull);
         assert_eq!(parts(&hull), parts(&other.expect("a hull")));
     }
     assert!(built >= 200, "only {built} of 300 were built");
+}
+
+/// A hull of points has a polyhedron whose hull it is. So a saved world goes on as it was.
+#[test]
+fn hulls_of_points_are_those_of_their_polyhedra() {
+    let mut rng = oorandom::Rand64::new(14);
+    let mut built = [0; 4];
+    for round in 0..400 {
+        let points = match round % 4 {
+            0 => ball(&mut rng, 4 + round % 120),
+            1 => with_flat_sides(&mut rng, round),
+            2 => {
+                let grid = |p: Vec3| (3.0 * p).round();
+                ball(&mut rng, 30).into_iter().map(grid).collect()
+            }
+            _ => {
+                let needle = Vec3::new(1.0, 0.01, 0.02);
+                let points = ball(&mut rng, 4 + round % 60).into_iter();
+                points.map(|p| p * needle).collect()
+            }
+        };
+        let surface = surface_of_points(&points).expect("a solid");
+        let hull = canonical_hull(&surface.vertices, &surface.triangles, surface.seem_flat);
+        let Some(hull) = hull else {
+            continue;
+        };
+        built[round % 4] += 1;
+        let triangles = hull.triangles();
+        let polyhedron = ConvexPolyhedron::from_convex_mesh(hull.points.to_vec(), &triangles);
+        let other = Hull::try_from(&polyhedron.expect("a polyhedron"));
+        assert_eq!(
+            parts(&hull),
+            parts(&other.expect("a hull")),
+            "round {round}"
+        );
+    }
+    assert!(
+        built.iter().all(|&count| count >= 50),
+        "{built:?} of 100 each"
+    );
 }
