@@ -14,23 +14,25 @@ pub(super) struct ExactPlane {
     corners: [DVec3; 3],
     /// Of twice the triangle's length.
     normal: DVec3,
-    /// The sums of the products of which the normal is made, which bound its rounding error.
-    products: DVec3,
+    /// Heights above this one have the right sign.
+    certain: f64,
 }
 
 impl ExactPlane {
-    pub fn new([a, b, c]: [DVec3; 3]) -> Self {
+    /// For points no farther from the first corner than `extent`, in each coordinate.
+    pub fn new([a, b, c]: [DVec3; 3], extent: DVec3) -> Self {
         let (u, v) = (b - a, c - a);
         let normal = u.cross(v);
         let [u, v] = [u, v].map(DVec3::abs);
+        let products = DVec3::new(
+            u.y * v.z + u.z * v.y,
+            u.z * v.x + u.x * v.z,
+            u.x * v.y + u.y * v.x,
+        );
         Self {
             corners: [a, b, c],
             normal,
-            products: DVec3::new(
-                u.y * v.z + u.z * v.y,
-                u.z * v.x + u.x * v.z,
-                u.x * v.y + u.y * v.x,
-            ),
+            certain: ORIENTATION_ROUNDING * products.dot(extent),
         }
     }
 
@@ -39,9 +41,8 @@ impl ExactPlane {
     /// The sign is exact if all coordinates are f32 values. The value is good up to rounding.
     #[inline]
     pub fn height(&self, p: DVec3) -> f64 {
-        let w = p - self.corners[0];
-        let height = self.normal.dot(w);
-        if height.abs() > ORIENTATION_ROUNDING * self.products.dot(w.abs()) {
+        let height = self.normal.dot(p - self.corners[0]);
+        if height.abs() > self.certain {
             return height;
         }
         exact_height(self.corners, p)
@@ -165,7 +166,8 @@ mod tests {
         ];
         let inside = place(m - 3.0, m + 1.0, m + 1.0).y;
         assert_eq!(inside, f64::from(m) + 1.0);
-        let sign = |p: DVec3| ExactPlane::new(plane).height(p);
+        let extent = DVec3::splat(4.0 * f64::from(m));
+        let sign = |p: DVec3| ExactPlane::new(plane, extent).height(p);
         assert_eq!(sign(place(m - 2.0, m + 1.0, m + 1.0)), 0.0);
         let tiny = f32::from_bits(1);
         let above = sign(place(m - 2.0, m + 1.0, m + 1.0) + DVec3::X * f64::from(tiny));
@@ -176,7 +178,7 @@ mod tests {
             place(1.0, 2.0, 5.0),
         ];
         let on = place(m, m, 3.0 * m);
-        let over_flat = |p: DVec3| ExactPlane::new(flat).height(p);
+        let over_flat = |p: DVec3| ExactPlane::new(flat, extent).height(p);
         let exact = over_flat(place(3.0, 4.0, 11.0));
         assert_eq!(exact, 0.0);
         assert_eq!(

@@ -34,7 +34,8 @@ pub(super) fn convex_hull(points: &[Vec3]) -> Result<HullTriangles, HullError> {
     // At a point in a flat side or on a straight edge, fewer than three edges bend.
     let corners: Vec<usize> = (0..points.len()).filter(|&v| bends[v] > 2).collect();
     let vertices: Vec<Vec3> = corners.iter().map(|&v| points[v]).collect();
-    if surface.vertex_count > corners.len() {
+    // By Euler's formula. There are more on the surface.
+    if surface.facet_count() / 2 + 2 > corners.len() {
         return convex_hull(&vertices);
     }
     let mut ids = vec![0; points.len()];
@@ -65,17 +66,32 @@ struct HullFacet {
 }
 
 impl HullFacet {
-    fn new(points: &[DVec3], vertices: [u32; 3], beyond: [u32; 3]) -> Self {
+    fn new(vertices: [u32; 3], plane: ExactPlane, beyond: [u32; 3]) -> Self {
         Self {
             vertices,
-            plane: ExactPlane::new(vertices.map(|v| points.at(v))),
+            plane,
             beyond,
             above: Vec::new(),
             peak: (0.0, 0),
             is_removed: false,
         }
     }
+
+    /// Adds a point above it to its outside set.
+    #[inline]
+    fn push(&mut self, point: u32, height: f64, points: &[DVec3]) {
+        self.above.push(point);
+        // Among points in a plane, the first and last in coordinate order are corners.
+        let place = |v: u32| points.at(v).to_array();
+        let is_as_high = || height == self.peak.0 && place(point) > place(self.peak.1);
+        if height > self.peak.0 || is_as_high() {
+            self.peak = (height, point);
+        }
+    }
 }
+
+/// The triangles of a hull of the most vertices.
+const MOST_FACETS: usize = 2 * MAX_VERTICES - 4;
 
 /// An edge of the horizon, as the visible facet has it, with the facet beyond, which is not visible.
 struct HorizonEdge {
@@ -86,8 +102,11 @@ struct HorizonEdge {
 
 struct GrowingHull<'a> {
     points: &'a [DVec3],
+    /// The greatest differences between points, in each coordinate.
+    extent: DVec3,
     facets: Vec<HullFacet>,
-    vertex_count: usize,
+    /// How many of the facets were removed.
+    removed: usize,
     /// The new facet whose side on the horizon starts at a vertex.
     starting_at: Vec<u32>,
 }
@@ -106,7 +125,9 @@ impl<'a> GrowingHull<'a> {
         let b = farthest(points, |p| p.distance_squared(points[a])).1;
         let along = points[b] - points[a];
         let c = farthest(points, |p| along.cross(p - points[a]).length_squared()).1;
-        let base = ExactPlane::new([a, b, c].map(|v| points[v]));
+        let [least, most] = [DVec3::min, DVec3::max].map(|f| points.iter().copied().reduce(f));
+        let extent = least.zip(most).map_or(DVec3::ZERO, |(least, most)| most - least);
+        let base = ExactPlane::new([a, b, c].map(|v| points[v]), extent);
         let (height, d) = farthest(points, |p| base.height(p).abs());
         if height == 0.0 {
             return Err(HullError::Flat);
@@ -116,27 +137,33 @@ impl<'a> GrowingHull<'a> {
         let [a, b, c, d] = [a, b, c, d].map(|v| v as u32);
         let mut surface = Self {
             points,
-            facets: vec![
-                HullFacet::new(points, [a, b, c], [1, 2, 3]),
-                HullFacet::new(points, [a, d, b], [3, 2, 0]),
-                HullFacet::new(points, [b, d, c], [1, 3, 0]),
-                HullFacet::new(points, [c, d, a], [2, 1, 0]),
-            ],
-            vertex_count: 4,
+            extent,
+            facets: Vec::new(),
+            removed: 0,
             starting_at: vec![0; points.len()],
         };
+        surface.add([a, b, c], [1, 2, 3]);
+        surface.add([a, d, b], [3, 2, 0]);
+        surface.add([b, d, c], [1, 3, 0]);
+        surface.add([c, d, a], [2, 1, 0]);
         for point in (0..points.short_len()).filter(|point| ![a, b, c, d].contains(point)) {
             surface.assign(point, 0);
         }
         Ok(surface)
     }
 
+    fn add(&mut self, vertices: [u32; 3], beyond: [u32; 3]) {
+        let plane = ExactPlane::new(vertices.map(|v| self.points.at(v)), self.extent);
+        self.facets.push(HullFacet::new(vertices, plane, beyond));
+    }
+
     fn height(&self, facet: u32, point: u32) -> f64 {
         self.facet(facet).plane.height(self.points.at(point))
     }
 
-    fn facet_count(&self) -> u32 {
-        self.facets.short_len()
+    /// The number of facets of the surface.
+    fn facet_count(&self) -> usize {
+        self.facets.len() - self.removed
     }
 
     fn facet(&self, id: u32) -> &HullFacet {
@@ -149,17 +176,11 @@ impl<'a> GrowingHull<'a> {
 
     /// Assigns a point to the first facet, from `first` on, that it is above, if there is one.
     fn assign(&mut self, point: u32, first: u32) {
-        for facet in first..self.facet_count() {
-            let height = self.height(facet, point);
+        let at = self.points.at(point);
+        for facet in &mut self.facets[first as usize..] {
+            let height = facet.plane.height(at);
             if height > 0.0 {
-                let facet = self.facets.at_mut(facet);
-                facet.above.push(point);
-                // Among points in a plane, the first and last in coordinate order are corners.
-                let place = |v: u32| self.points.at(v).to_array();
-                let is_as_high = height == facet.peak.0 && place(point) > place(facet.peak.1);
-                if height > facet.peak.0 || is_as_high {
-                    facet.peak = (height, point);
-                }
+                facet.push(point, height, self.points);
                 return;
             }
         }
@@ -171,13 +192,13 @@ impl<'a> GrowingHull<'a> {
         let mut facet = 0;
         while facet < self.facets.len() {
             if !self.facets[facet].above.is_empty() {
-                self.vertex_count += 1;
-                if self.vertex_count > MAX_VERTICES {
-                    return Err(HullError::TooManyPoints);
-                }
                 let eye = self.facets[facet].peak.1;
                 self.remove_seen(eye, facet as u32, &mut horizon, &mut seen);
+                self.removed += seen.len();
                 let first = self.close(eye, &horizon);
+                if self.facet_count() > MOST_FACETS {
+                    return Err(HullError::TooManyPoints);
+                }
                 for &facet in &seen {
                     unassigned.append(&mut self.facet_mut(facet).above);
                 }
@@ -231,10 +252,9 @@ impl<'a> GrowingHull<'a> {
 
     /// Adds facets between a point and the horizon. Returns the first.
     fn close(&mut self, eye: u32, horizon: &[HorizonEdge]) -> u32 {
-        let first = self.facet_count();
+        let first = self.facets.short_len();
         for (id, edge) in (first..).zip(horizon) {
-            let facet = HullFacet::new(self.points, [edge.from, edge.to, eye], [edge.beyond, 0, 0]);
-            self.facets.push(facet);
+            self.add([edge.from, edge.to, eye], [edge.beyond, 0, 0]);
             *self.starting_at.at_mut(edge.from) = id;
             let other = self.facet_mut(edge.beyond);
             let side = other.vertices.iter().position(|&v| v == edge.to);
