@@ -73,16 +73,20 @@ impl<'a> Sides<'a> {
             borders: vec![SideBorder::default(); half_edges],
             outgoing: vec![0; points.len()],
         };
-        let is_flat: Vec<bool> = (0..half_edges as HalfEdge)
-            .map(|h| sides.is_flat(h))
-            .collect();
+        // Each edge once.
+        let edges = || (0..half_edges as HalfEdge).filter(|&h| h < mesh.twin(h));
+        let mut is_flat = vec![false; half_edges];
+        for h in edges().filter(|&h| sides.is_flat(h)) {
+            *is_flat.at_mut(h) = true;
+            *is_flat.at_mut(mesh.twin(h)) = true;
+        }
         let mut seen = vec![false; mesh.triangles.len()];
         for t in 0..seen.len() {
             if !seen[t] {
                 sides.add(t, &is_flat, &mut seen)?;
             }
         }
-        let all_bend = (0..half_edges as HalfEdge).all(|h| is_flat.at(h) || sides.bends(h));
+        let all_bend = edges().all(|h| is_flat.at(h) || sides.bends(h));
         all_bend.then_some(sides)
     }
 

@@ -5,6 +5,8 @@
 //! exactly convex, and every point is on or beneath it, even if points are coplanar, coincide, or form a thin
 //! hull.
 
+use std::mem;
+
 use glam::{DVec3, Vec3};
 
 use super::orientation::ExactPlane;
@@ -58,8 +60,8 @@ struct HullFacet {
     plane: ExactPlane,
     /// The facets beyond the sides from each vertex to the next.
     beyond: [u32; 3],
-    /// Its outside set: points above it. Each point is assigned to one of the facets that it is above.
-    above: Vec<u32>,
+    /// The last point of its outside set, or `NONE`. Each point is in the set of one of the facets that it is above.
+    last_above: u32,
     /// The highest of these points.
     peak: (f64, u32),
     is_removed: bool,
@@ -71,16 +73,15 @@ impl HullFacet {
             vertices,
             plane,
             beyond,
-            above: Vec::new(),
+            last_above: NONE,
             peak: (0.0, 0),
             is_removed: false,
         }
     }
 
-    /// Adds a point above it to its outside set.
+    /// Notes a point above it.
     #[inline]
-    fn push(&mut self, point: u32, height: f64, points: &[DVec3]) {
-        self.above.push(point);
+    fn raise_peak(&mut self, point: u32, height: f64, points: &[DVec3]) {
         // Among points in a plane, the first and last in coordinate order are corners.
         let place = |v: u32| points.at(v).to_array();
         let is_as_high = || height == self.peak.0 && place(point) > place(self.peak.1);
@@ -109,7 +110,12 @@ struct GrowingHull<'a> {
     removed: usize,
     /// The new facet whose side on the horizon starts at a vertex.
     starting_at: Vec<u32>,
+    /// For each point of an outside set, the one before it, or `NONE`.
+    before: Vec<u32>,
 }
+
+/// No point.
+const NONE: u32 = u32::MAX;
 
 /// The greatest of the measures of points, and the first point that has it.
 fn farthest(points: &[DVec3], measure: impl Fn(DVec3) -> f64) -> (f64, usize) {
@@ -141,6 +147,7 @@ impl<'a> GrowingHull<'a> {
             facets: Vec::new(),
             removed: 0,
             starting_at: vec![0; points.len()],
+            before: vec![NONE; points.len()],
         };
         surface.add([a, b, c], [1, 2, 3]);
         surface.add([a, d, b], [3, 2, 0]);
@@ -180,7 +187,8 @@ impl<'a> GrowingHull<'a> {
         for facet in &mut self.facets[first as usize..] {
             let height = facet.plane.height(at);
             if height > 0.0 {
-                facet.push(point, height, self.points);
+                facet.raise_peak(point, height, self.points);
+                *self.before.at_mut(point) = mem::replace(&mut facet.last_above, point);
                 return;
             }
         }
@@ -191,7 +199,7 @@ impl<'a> GrowingHull<'a> {
         let (mut horizon, mut seen, mut unassigned) = (Vec::new(), Vec::new(), Vec::new());
         let mut facet = 0;
         while facet < self.facets.len() {
-            if !self.facets[facet].above.is_empty() {
+            if self.facets[facet].last_above != NONE {
                 let eye = self.facets[facet].peak.1;
                 self.remove_seen(eye, facet as u32, &mut horizon, &mut seen);
                 self.removed += seen.len();
@@ -200,7 +208,11 @@ impl<'a> GrowingHull<'a> {
                     return Err(HullError::TooManyPoints);
                 }
                 for &facet in &seen {
-                    unassigned.append(&mut self.facet_mut(facet).above);
+                    let mut point = mem::replace(&mut self.facet_mut(facet).last_above, NONE);
+                    while point != NONE {
+                        unassigned.push(point);
+                        point = self.before.at(point);
+                    }
                 }
                 // The eye is a corner now.
                 for point in unassigned.drain(..).filter(|&point| point != eye) {
