@@ -42,6 +42,15 @@ pub struct Times {
     pub solver: f64,
     /// Keeping fast bodies from tunnelling.
     pub ccd: f64,
+    /// Making new hulls before the step.
+    pub making: f64,
+}
+
+impl Times {
+    /// The step, and what comes before it.
+    pub fn frame(&self) -> f64 {
+        self.making + self.step
+    }
 }
 
 /// One frame after the warm-up.
@@ -209,5 +218,6 @@ fn times(world: &World) -> Times {
         narrow_phase: counters.narrow_phase_time_ms(),
         solver: counters.solver_time_ms(),
         ccd: counters.ccd.toi_computation_time.time_ms(),
+        making: world.making.as_secs_f64() * 1e3,
     }
 }

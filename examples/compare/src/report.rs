@@ -5,7 +5,7 @@ use std::fmt;
 use isa_gjk::{Stage, Stats};
 use serde::Serialize;
 
-use crate::measure::{BLOCK, Frame, Run, RunLength, Side};
+use crate::measure::{BLOCK, Frame, Run, RunLength, Side, Times};
 use crate::verify::Verified;
 use testkit::quality::quantile;
 use testkit::scenes::{Hulls, Scene, SceneParams};
@@ -111,8 +111,10 @@ fn figures(scene: Scene, runs: &[Run]) -> Vec<Figure> {
         time("narrow phase", |frame| frame.times.narrow_phase),
         time("solver", |frame| frame.times.solver),
         time("ccd", |frame| frame.times.ccd),
-        Figure::all_steps("all steps", runs, |steps| steps.sum()),
-        Figure::all_steps("worst step", runs, |steps| steps.fold(0.0, f64::max)),
+        Figure::all_steps("all steps", runs, |times| times.map(|t| t.step).sum()),
+        Figure::all_steps("worst step", runs, |times| {
+            times.map(|t| t.step).fold(0.0, f64::max)
+        }),
         other("pairs", "", |side| per_frame(side, |f| f.pairs as f64)),
         other("touching pairs", "", |side| {
             per_frame(side, |f| f.touching as f64)
@@ -137,6 +139,15 @@ fn figures(scene: Scene, runs: &[Run]) -> Vec<Figure> {
                 .map_or(f64::INFINITY, |n| n as f64)
         }),
     ];
+    if scene.renews() {
+        figures.extend([
+            Figure::all_steps("making hulls", runs, |times| times.map(|t| t.making).sum()),
+            Figure::all_steps("all frames", runs, |times| times.map(Times::frame).sum()),
+            Figure::all_steps("worst frame", runs, |times| {
+                times.map(Times::frame).fold(0.0, f64::max)
+            }),
+        ]);
+    }
     if scene.stands() {
         figures.extend([
             other("largest tilt at the end", "°", |side| side.quality.tilt),
@@ -163,10 +174,10 @@ impl Figure {
     fn all_steps(
         name: &'static str,
         runs: &[Run],
-        of: fn(&mut dyn Iterator<Item = f64>) -> f64,
+        of: fn(&mut dyn Iterator<Item = &Times>) -> f64,
     ) -> Self {
         Self::with_ratio(name, runs, |side| {
-            of(&mut side.frames.iter().map(|frame| frame.times.step))
+            of(&mut side.frames.iter().map(|frame| &frame.times))
         })
     }
 

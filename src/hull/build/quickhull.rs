@@ -132,7 +132,9 @@ impl<'a> GrowingHull<'a> {
         let along = points[b] - points[a];
         let c = farthest(points, |p| along.cross(p - points[a]).length_squared()).1;
         let [least, most] = [DVec3::min, DVec3::max].map(|f| points.iter().copied().reduce(f));
-        let extent = least.zip(most).map_or(DVec3::ZERO, |(least, most)| most - least);
+        let extent = least
+            .zip(most)
+            .map_or(DVec3::ZERO, |(least, most)| most - least);
         let base = ExactPlane::new([a, b, c].map(|v| points[v]), extent);
         let (height, d) = farthest(points, |p| base.height(p).abs());
         if height == 0.0 {

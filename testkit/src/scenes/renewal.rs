@@ -1,7 +1,9 @@
 //! Hulls that come into being while a world runs.
 
 use std::collections::VecDeque;
+use std::time::{Duration, Instant};
 
+use isa_gjk::HullShape;
 use oorandom::Rand32;
 use rapier3d::prelude::*;
 
@@ -25,6 +27,8 @@ pub(super) struct Renewal {
     hull_shape: bool,
     can_sleep: bool,
     random: Rand32,
+    /// What it took to make hulls of points.
+    making: Duration,
 }
 
 impl Renewal {
@@ -49,16 +53,19 @@ impl Renewal {
             can_sleep: params.can_sleep,
             // Not the hulls of the other world, which the caches of this one could know.
             random: Rand32::new(2 * params.seed + u64::from(ours)),
+            making: Duration::ZERO,
         }
     }
 
-    /// Before a step.
-    pub fn renew(&mut self, physics: &mut PhysicsWorld, step: u32) {
+    /// Before a step. Returns how long it took to make new hulls.
+    pub fn renew(&mut self, physics: &mut PhysicsWorld, step: u32) -> Duration {
+        self.making = Duration::ZERO;
         match self.scene {
             Scene::Reshaped => self.reshape(physics),
             _ if step.is_multiple_of(BURST_EVERY) => self.burst(physics),
             _ => {}
         }
+        self.making
     }
 
     /// Every body gets another hull.
@@ -92,9 +99,14 @@ impl Renewal {
         if let Some(size) = self.size {
             shapes = hulls::scaled(&shapes, size).ok()?;
         }
-        if self.hull_shape {
-            shapes = hulls::prepared(&shapes).ok()?;
-        }
-        shapes.pop()
+        let points = shapes.pop()?.as_convex_polyhedron()?.points().to_vec();
+        let start = Instant::now();
+        let shape = if self.hull_shape {
+            HullShape::from_points(&points).ok().map(SharedShape::new)
+        } else {
+            SharedShape::convex_hull(&points)
+        };
+        self.making += start.elapsed();
+        shape
     }
 }

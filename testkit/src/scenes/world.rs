@@ -1,5 +1,7 @@
 //! A rapier world with the dispatcher of choice.
 
+use std::time::Duration;
+
 use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::*;
 
@@ -18,6 +20,8 @@ pub struct World {
     drum: Option<RigidBodyHandle>,
     shaken: Shaken,
     renewal: Option<Renewal>,
+    /// How long it took to make new hulls before the last step.
+    pub making: Duration,
     steps: u32,
 }
 
@@ -38,6 +42,7 @@ impl World {
             drum: None,
             shaken: Vec::new(),
             renewal: None,
+            making: Duration::ZERO,
             steps: 0,
         }
     }
@@ -61,7 +66,7 @@ impl World {
     pub fn step(&mut self) {
         self.steps += 1;
         if let Some(renewal) = &mut self.renewal {
-            renewal.renew(&mut self.physics, self.steps);
+            self.making = renewal.renew(&mut self.physics, self.steps);
         }
         // From the count of steps, so that rounding does not add up over a long run.
         let time = self.physics.integration_parameters.dt * self.steps as Real;
