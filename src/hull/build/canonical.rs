@@ -8,7 +8,6 @@ use super::flat_sides::FlatFaces;
 use super::steep::steep_hull;
 use crate::hull::Hull;
 use crate::hull::lists::Rows;
-use crate::support::Polytope;
 
 /// The hull with this surface, if each edge bends, or is a diagonal of a flat side. `seems_flat` only decides what is
 /// tried first.
@@ -49,9 +48,9 @@ impl Hull {
     pub(crate) fn triangles(&self) -> Vec<[u32; 3]> {
         let mut triangles = Vec::with_capacity(2 * self.points.len());
         for face in self.face_ids() {
-            let corner = |i| self.face_vertex(face, i).into();
-            let fan = (2..self.face_len(face)).map(|i| [corner(0), corner(i - 1), corner(i)]);
-            triangles.extend(fan);
+            let corners = self.faces.polygon(face);
+            let at = |i: usize| u32::from(corners[i].vertex);
+            triangles.extend((2..corners.len()).map(|i| [at(0), at(i - 1), at(i)]));
         }
         triangles
     }

@@ -33,12 +33,7 @@ impl FlatFaces {
     /// or it is hardly flat, or hardly bent at its border.
     pub fn of_triangles(points: &[DVec3], triangles: &[[u32; 3]], radius: f64) -> Option<Self> {
         let mesh = HalfEdgeMesh::new(points.len(), triangles).ok()?;
-        let sides = Sides::new(points, &mesh, radius)?;
-        let mut flat = Self::with_capacity(points.len(), sides.polygons.len(), triangles.len())?;
-        for polygon in &sides.polygons {
-            flat.push(polygon);
-        }
-        Some(flat)
+        Sides::new(points, &mesh, radius)?.find()
     }
 
     /// Adds a face, which begins at its lowest corner.
@@ -55,39 +50,56 @@ struct Sides<'a> {
     points: &'a [DVec3],
     mesh: &'a HalfEdgeMesh<'a>,
     radius: f64,
-    polygons: Vec<Vec<u32>>,
+    /// For each half-edge, whether the surface hardly bends there.
+    is_flat: Vec<bool>,
+    found: FlatFaces,
     /// For each half-edge between polygons.
     borders: Vec<SideBorder>,
+    /// The border of the current polygon, and its corners.
+    border: Vec<HalfEdge>,
+    polygon: Vec<u32>,
     /// For each corner of the current polygon, the border half-edge that starts there.
     outgoing: Vec<HalfEdge>,
+    /// Triangles of the current polygon whose neighbours have not been looked at, and those of all polygons.
+    stack: Vec<usize>,
+    seen: Vec<bool>,
 }
 
 impl<'a> Sides<'a> {
     fn new(points: &'a [DVec3], mesh: &'a HalfEdgeMesh<'a>, radius: f64) -> Option<Self> {
         let half_edges = 3 * mesh.triangles.len();
-        let mut sides = Self {
+        Some(Self {
             points,
             mesh,
             radius,
-            polygons: Vec::with_capacity(mesh.triangles.len()),
+            is_flat: vec![false; half_edges],
+            found: FlatFaces::with_capacity(points.len(), mesh.triangles.len(), half_edges)?,
             borders: vec![SideBorder::default(); half_edges],
+            border: Vec::with_capacity(points.len()),
+            polygon: Vec::with_capacity(points.len()),
             outgoing: vec![0; points.len()],
-        };
+            stack: Vec::with_capacity(mesh.triangles.len()),
+            seen: vec![false; mesh.triangles.len()],
+        })
+    }
+
+    fn find(mut self) -> Option<FlatFaces> {
+        let mesh = self.mesh;
+        let half_edges = self.is_flat.short_len();
         // Each edge once.
-        let edges = || (0..half_edges as HalfEdge).filter(|&h| h < mesh.twin(h));
-        let mut is_flat = vec![false; half_edges];
-        for h in edges().filter(|&h| sides.is_flat(h)) {
-            *is_flat.at_mut(h) = true;
-            *is_flat.at_mut(mesh.twin(h)) = true;
+        let edges = || (0..half_edges).filter(|&h| h < mesh.twin(h));
+        for h in edges() {
+            let is_flat = self.is_flat(h);
+            *self.is_flat.at_mut(h) = is_flat;
+            *self.is_flat.at_mut(mesh.twin(h)) = is_flat;
         }
-        let mut seen = vec![false; mesh.triangles.len()];
-        for t in 0..seen.len() {
-            if !seen[t] {
-                sides.add(t, &is_flat, &mut seen)?;
+        for triangle in 0..mesh.triangles.len() {
+            if !self.seen[triangle] {
+                self.add(triangle)?;
             }
         }
-        let all_bend = edges().all(|h| is_flat.at(h) || sides.bends(h));
-        all_bend.then_some(sides)
+        let all_bend = edges().all(|h| self.is_flat.at(h) || self.bends(h));
+        all_bend.then_some(self.found)
     }
 
     fn along(&self, h: HalfEdge) -> DVec3 {
@@ -107,56 +119,51 @@ impl<'a> Sides<'a> {
         before.dot(third(h)).abs() <= FLAT_EDGE * self.radius * area
     }
 
-    /// The border of the polygon around a triangle, counter-clockwise from the lowest corner.
-    fn border(
-        &mut self,
-        triangle: usize,
-        is_flat: &[bool],
-        seen: &mut [bool],
-    ) -> Option<Vec<HalfEdge>> {
-        let (mut stack, mut border) = (vec![triangle], Vec::new());
+    /// Finds the border of the polygon around a triangle, counter-clockwise from the lowest corner.
+    fn find_border(&mut self, triangle: usize) -> Option<()> {
         let mut count = 0;
-        seen[triangle] = true;
-        while let Some(t) = stack.pop() {
+        self.border.clear();
+        self.stack.push(triangle);
+        self.seen[triangle] = true;
+        while let Some(t) = self.stack.pop() {
             count += 1;
             for h in self.mesh.sides_of(t) {
                 let beside = triangle_of(self.mesh.twin(h));
-                if !is_flat.at(h) {
-                    border.push(h);
-                } else if !std::mem::replace(&mut seen[beside], true) {
-                    stack.push(beside);
+                if !self.is_flat.at(h) {
+                    self.border.push(h);
+                } else if !std::mem::replace(&mut self.seen[beside], true) {
+                    self.stack.push(beside);
                 }
             }
         }
         // Only a polygon without holes and without corners inside has this many triangles.
-        if border.len() != count + 2 {
-            return None;
-        }
-        self.sort(&mut border)?;
-        Some(border)
+        (self.border.len() == count + 2).then_some(())?;
+        self.sort_border()
     }
 
     /// Adds the polygon around a triangle.
-    fn add(&mut self, triangle: usize, is_flat: &[bool], seen: &mut [bool]) -> Option<()> {
-        let border = self.border(triangle, is_flat, seen)?;
-        let polygon: Vec<u32> = border.iter().map(|&h| self.mesh.start(h)).collect();
-        let normal = side_normal(self.points, &polygon, self.radius)?;
-        for (i, &h) in border.iter().enumerate() {
-            *self.borders.at_mut(h) = SideBorder::new(self.points, &polygon, i, normal)?;
+    fn add(&mut self, triangle: usize) -> Option<()> {
+        self.find_border(triangle)?;
+        let corners = self.border.iter().map(|&h| self.mesh.start(h));
+        self.polygon.clear();
+        self.polygon.extend(corners);
+        let normal = side_normal(self.points, &self.polygon, self.radius)?;
+        for (i, &h) in self.border.iter().enumerate() {
+            *self.borders.at_mut(h) = SideBorder::new(self.points, &self.polygon, i, normal)?;
         }
-        self.polygons.push(polygon);
+        self.found.push(&self.polygon);
         Some(())
     }
 
     /// Sorts the border of a polygon counter-clockwise, starting from the lowest corner.
-    fn sort(&mut self, border: &mut [HalfEdge]) -> Option<()> {
-        for &h in &*border {
+    fn sort_border(&mut self) -> Option<()> {
+        for &h in &self.border {
             *self.outgoing.at_mut(self.mesh.start(h)) = h;
         }
-        let first = *border.iter().min_by_key(|&&h| self.mesh.start(h))?;
+        let first = *self.border.iter().min_by_key(|&&h| self.mesh.start(h))?;
         let mut h = first;
-        let count = border.len();
-        for (i, place) in border.iter_mut().enumerate() {
+        let count = self.border.len();
+        for (i, place) in self.border.iter_mut().enumerate() {
             *place = h;
             h = self.outgoing.at(self.mesh.end(h));
             // A border that touches itself comes back too early.
