@@ -94,6 +94,11 @@ impl HullFacet {
 /// The triangles of a hull of the most vertices.
 const MOST_FACETS: usize = 2 * MAX_VERTICES - 4;
 
+/// About so many facets are added for each corner, most of which are removed again.
+const FACETS_PER_POINT: usize = 6;
+/// Most of so few points are corners. Of more points, most are often inside.
+const MOSTLY_CORNERS: usize = 64;
+
 /// An edge of the horizon, as the visible facet has it, with the facet beyond, which is not visible.
 struct HorizonEdge {
     from: u32,
@@ -146,7 +151,7 @@ impl<'a> GrowingHull<'a> {
         let mut surface = Self {
             points,
             extent,
-            facets: Vec::new(),
+            facets: Vec::with_capacity(FACETS_PER_POINT * points.len().min(MOSTLY_CORNERS)),
             removed: 0,
             starting_at: vec![0; points.len()],
             before: vec![NONE; points.len()],
