@@ -137,8 +137,8 @@ fn both_ways_to_build_it_agree() {
     let plain = SharedShape::convex_hull(&points).expect("a hull");
     let from_plain = prepared(&plain);
     assert_same(
-        &from_triangles,
-        hull_shape(&from_plain),
+        from_triangles.hull(),
+        hull_shape(&from_plain).hull(),
         "built from a plain hull",
     );
     // Our builder numbers vertices in another order than parry's.

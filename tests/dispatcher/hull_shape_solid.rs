@@ -11,7 +11,7 @@ use testkit::cases::hulls;
 use testkit::generate::{Rng, prepared};
 use testkit::oracle::Solid;
 use testkit::report::{Finding, Report};
-use testkit::twins::{assert_same, hull_shape, with_twins};
+use testkit::twins::{hull_shape, with_twins};
 
 /// What f32 coordinates and answers allow, relative to the numbers they are made of.
 const ROUNDING: f64 = 2e-6;
@@ -30,9 +30,11 @@ fn bounds_are_those_of_the_plain_hull() {
         let plain = &hull.shape;
         assert_eq!(ours.compute_local_aabb(), plain.compute_local_aabb());
         assert_eq!(ours.ccd_thickness(), plain.ccd_thickness());
-        let spheres = [ours, plain].map(|s| s.compute_local_bounding_sphere());
-        assert_same(&spheres[0], &spheres[1], name);
         let size = hull.solid.diameter();
+        let limit = ROUNDING as Real * size as Real;
+        let [a, b] = [ours, plain].map(|s| s.compute_local_bounding_sphere());
+        assert!(a.center.distance(b.center) <= limit, "{name}: {a:?}");
+        assert!((a.radius - b.radius).abs() <= limit, "{name}: {a:?}");
         for _ in 0..100 {
             let pose = rng.pose(5.0 * size).to_f32();
             let [a, b] = [ours, plain].map(|s| s.compute_aabb(&pose));

@@ -188,4 +188,41 @@ mod tests {
         assert!(over_flat(place(0.0, 0.0, tiny)) > 0.0);
         assert!(over_flat(place(0.0, 0.0, -tiny)) < 0.0);
     }
+
+    /// Integers so large on one axis that f64 does not hold their differences, and points in a plane or beside it.
+    #[test]
+    fn signs_are_those_of_integers() {
+        let mut rng = oorandom::Rand64::new(5);
+        let mut signs = [0; 3];
+        for round in 0..60_000 {
+            let mut integer =
+                |limit: u64| i128::from(rng.rand_range(0..2 * limit)) - i128::from(limit);
+            let mut point = || {
+                [
+                    integer(1 << 20) << integer(55).abs(),
+                    integer(400),
+                    integer(400),
+                ]
+            };
+            let [a, b, c] = [(); 3].map(|()| point());
+            let along = |p: [i128; 3]| [0, 1, 2].map(|i| p[i] - a[i]);
+            let (u, v) = (along(b), along(c));
+            let [i, j] = [integer(3), integer(3)];
+            let mut p = [0, 1, 2].map(|k| a[k] + i * u[k] + j * v[k]);
+            p[round % 3] += integer(3);
+            let w = along(p);
+            let minor = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];
+            let exact = minor(1, 2) * w[0] + minor(2, 0) * w[1] + minor(0, 1) * w[2];
+            if !p.iter().all(|&x| x as f32 as i128 == x) {
+                continue;
+            }
+            let [a, b, c, p] = [a, b, c, p].map(|p| DVec3::from(p.map(|x| x as f64)));
+            let extent = (b - a).abs().max((c - a).abs()).max((p - a).abs());
+            let height = ExactPlane::new([a, b, c], extent).height(p);
+            let sign = i128::from(height > 0.0) - i128::from(height < 0.0);
+            assert_eq!(sign, exact.signum(), "round {round}");
+            signs[(sign + 1) as usize] += 1;
+        }
+        assert!(signs.iter().all(|&count| count > 1_000), "{signs:?}");
+    }
 }

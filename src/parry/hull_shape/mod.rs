@@ -34,8 +34,9 @@
 //! - Only plain hulls have rounded borders: use `SharedShape::round_convex_hull`.
 //!
 //! # Memory
-//! The polyhedron takes about 250 bytes per vertex, and the prepared hull about 130 ([`Hull::heap_bytes`]). A
-//! plain collider takes the same if our dispatcher answers its pairs, and 12 bytes per vertex more for the
+//! The prepared hull takes about 130 bytes per vertex ([`Hull::heap_bytes`]). parry's polyhedron takes 250 more. It is
+//! made when it is first asked for: to save, draw or sweep the shape, or if the shape was made from a polyhedron. A
+//! plain collider always has both if our dispatcher answers its pairs, and 12 bytes per vertex more for the
 //! comparison: up to 149 vertices, or for any number if the processor has no instruction for the digest.
 
 mod bounds;
