@@ -213,15 +213,18 @@ mod tests {
             let w = along(p);
             let minor = |i: usize, j: usize| u[i] * v[j] - u[j] * v[i];
             let exact = minor(1, 2) * w[0] + minor(2, 0) * w[1] + minor(0, 1) * w[2];
-            if !p.iter().all(|&x| x as f32 as i128 == x) {
+            let number = |x: i128| x.to_string().parse::<f32>().map_or(f64::NAN, f64::from);
+            if p.iter()
+                .any(|&x| format!("{:.0}", number(x)) != x.to_string())
+            {
                 continue;
             }
-            let [a, b, c, p] = [a, b, c, p].map(|p| DVec3::from(p.map(|x| x as f64)));
+            let [a, b, c, p] = [a, b, c, p].map(|p| DVec3::from(p.map(number)));
             let extent = (b - a).abs().max((c - a).abs()).max((p - a).abs());
             let height = ExactPlane::new([a, b, c], extent).height(p);
             let sign = i128::from(height > 0.0) - i128::from(height < 0.0);
             assert_eq!(sign, exact.signum(), "round {round}");
-            signs[(sign + 1) as usize] += 1;
+            signs[usize::from(height > 0.0) + 2 * usize::from(height < 0.0)] += 1;
         }
         assert!(signs.iter().all(|&count| count > 1_000), "{signs:?}");
     }

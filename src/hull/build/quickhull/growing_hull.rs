@@ -1,95 +1,14 @@
-//! The convex hull of points (Barber, Dobkin, Huhdanpaa, *The quickhull algorithm for convex hulls*,
-//! ACM Trans. Math. Softw. 22(4), 1996).
-//!
-//! Points are compared with planes by exact signs. So the horizon is always a single loop, the surface is
-//! exactly convex, and every point is on or beneath it, even if points are coplanar, coincide, or form a thin
-//! hull.
+//! A hull that grows point by point.
 
 use std::mem;
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
+use super::facet::{HullFacet, NONE};
 use super::orientation::ExactPlane;
-use super::validate::MAX_VERTICES;
 use crate::at::At;
 use crate::hull::HullError;
-
-/// The triangulated surface of a hull.
-pub(crate) struct HullTriangles {
-    /// The corners, in the order of the points.
-    pub vertices: Vec<Vec3>,
-    /// Counter-clockwise from outside.
-    pub triangles: Vec<[u32; 3]>,
-    /// Whether some of them seem to be in one plane.
-    pub seem_flat: bool,
-}
-
-/// The hull of finite points.
-///
-/// # Errors
-/// If the points lie in a plane, or more of them are corners than a hull may have.
-pub(super) fn convex_hull(points: &[Vec3]) -> Result<HullTriangles, HullError> {
-    let exact: Vec<DVec3> = points.iter().map(|p| p.as_dvec3()).collect();
-    let mut surface = GrowingHull::tetrahedron(&exact)?;
-    surface.grow()?;
-    let (bends, seem_flat) = surface.bends();
-    // At a point in a flat side or on a straight edge, fewer than three edges bend.
-    let corners: Vec<usize> = (0..points.len()).filter(|&v| bends[v] > 2).collect();
-    let vertices: Vec<Vec3> = corners.iter().map(|&v| points[v]).collect();
-    // By Euler's formula. There are more on the surface.
-    if surface.facet_count() / 2 + 2 > corners.len() {
-        return convex_hull(&vertices);
-    }
-    let mut ids = vec![0; points.len()];
-    for (id, &corner) in (0..).zip(&corners) {
-        ids[corner] = id;
-    }
-    let facets = surface.facets.iter().filter(|facet| !facet.is_removed);
-    let triangle = |facet: &HullFacet| facet.vertices.map(|v| ids.at(v));
-    Ok(HullTriangles {
-        vertices,
-        triangles: facets.map(triangle).collect(),
-        seem_flat,
-    })
-}
-
-/// A triangle of the surface.
-struct HullFacet {
-    /// Counter-clockwise from outside.
-    vertices: [u32; 3],
-    plane: ExactPlane,
-    /// The facets beyond the sides from each vertex to the next.
-    beyond: [u32; 3],
-    /// The last point of its outside set, or `NONE`. Each point is in the set of one of the facets that it is above.
-    last_above: u32,
-    /// The highest of these points.
-    peak: (f64, u32),
-    is_removed: bool,
-}
-
-impl HullFacet {
-    fn new(vertices: [u32; 3], plane: ExactPlane, beyond: [u32; 3]) -> Self {
-        Self {
-            vertices,
-            plane,
-            beyond,
-            last_above: NONE,
-            peak: (0.0, 0),
-            is_removed: false,
-        }
-    }
-
-    /// Notes a point above it.
-    #[inline]
-    fn raise_peak(&mut self, point: u32, height: f64, points: &[DVec3]) {
-        // Among points in a plane, the first and last in coordinate order are corners.
-        let place = |v: u32| points.at(v).to_array();
-        let is_as_high = || height == self.peak.0 && place(point) > place(self.peak.1);
-        if height > self.peak.0 || is_as_high() {
-            self.peak = (height, point);
-        }
-    }
-}
+use crate::hull::build::validate::MAX_VERTICES;
 
 /// The triangles of a hull of the most vertices.
 const MOST_FACETS: usize = 2 * MAX_VERTICES - 4;
@@ -106,7 +25,7 @@ struct HorizonEdge {
     beyond: u32,
 }
 
-struct GrowingHull<'a> {
+pub(super) struct GrowingHull<'a> {
     points: &'a [DVec3],
     /// The greatest differences between points, in each coordinate.
     extent: DVec3,
@@ -119,9 +38,6 @@ struct GrowingHull<'a> {
     before: Vec<u32>,
 }
 
-/// No point.
-const NONE: u32 = u32::MAX;
-
 /// The greatest of the measures of points, and the first point that has it.
 fn farthest(points: &[DVec3], measure: impl Fn(DVec3) -> f64) -> (f64, usize) {
     let measured = points.iter().map(|&p| measure(p)).zip(0..);
@@ -131,7 +47,7 @@ fn farthest(points: &[DVec3], measure: impl Fn(DVec3) -> f64) -> (f64, usize) {
 }
 
 impl<'a> GrowingHull<'a> {
-    fn tetrahedron(points: &'a [DVec3]) -> Result<Self, HullError> {
+    pub fn tetrahedron(points: &'a [DVec3]) -> Result<Self, HullError> {
         let a = farthest(points, |p| -p.x).1;
         let b = farthest(points, |p| p.distance_squared(points[a])).1;
         let along = points[b] - points[a];
@@ -176,8 +92,13 @@ impl<'a> GrowingHull<'a> {
     }
 
     /// The number of facets of the surface.
-    fn facet_count(&self) -> usize {
+    pub fn facet_count(&self) -> usize {
         self.facets.len() - self.removed
+    }
+
+    /// The facets of the surface.
+    pub fn surface(&self) -> impl Iterator<Item = &HullFacet> {
+        self.facets.iter().filter(|facet| !facet.is_removed)
     }
 
     fn facet(&self, id: u32) -> &HullFacet {
@@ -189,9 +110,9 @@ impl<'a> GrowingHull<'a> {
     }
 
     /// Assigns a point to the first facet, from `first` on, that it is above, if there is one.
-    fn assign(&mut self, point: u32, first: u32) {
+    fn assign(&mut self, point: u32, first: usize) {
         let at = self.points.at(point);
-        for facet in &mut self.facets[first as usize..] {
+        for facet in &mut self.facets[first..] {
             let height = facet.plane.height(at);
             if height > 0.0 {
                 facet.raise_peak(point, height, self.points);
@@ -202,7 +123,7 @@ impl<'a> GrowingHull<'a> {
     }
 
     /// Expands the hull to all points that are above a facet.
-    fn grow(&mut self) -> Result<(), HullError> {
+    pub fn grow(&mut self) -> Result<(), HullError> {
         let (mut horizon, mut seen, mut unassigned) = (Vec::new(), Vec::new(), Vec::new());
         let mut facet = 0;
         while facet < self.facets.len() {
@@ -210,7 +131,8 @@ impl<'a> GrowingHull<'a> {
                 let eye = self.facets[facet].peak.1;
                 self.remove_seen(eye, facet as u32, &mut horizon, &mut seen);
                 self.removed += seen.len();
-                let first = self.close(eye, &horizon);
+                let first = self.facets.len();
+                self.close(eye, &horizon);
                 if self.facet_count() > MOST_FACETS {
                     return Err(HullError::TooManyPoints);
                 }
@@ -269,8 +191,8 @@ impl<'a> GrowingHull<'a> {
         }
     }
 
-    /// Adds facets between a point and the horizon. Returns the first.
-    fn close(&mut self, eye: u32, horizon: &[HorizonEdge]) -> u32 {
+    /// Adds facets between a point and the horizon.
+    fn close(&mut self, eye: u32, horizon: &[HorizonEdge]) {
         let first = self.facets.short_len();
         for (id, edge) in (first..).zip(horizon) {
             self.add([edge.from, edge.to, eye], [edge.beyond, 0, 0]);
@@ -284,11 +206,10 @@ impl<'a> GrowingHull<'a> {
             self.facet_mut(id).beyond[1] = next;
             self.facet_mut(next).beyond[2] = id;
         }
-        first
     }
 
     /// At how many edges of each vertex the surface bends, and whether it seems to be flat somewhere.
-    fn bends(&self) -> (Vec<u32>, bool) {
+    pub fn bends(&self) -> (Vec<u32>, bool) {
         let (mut bends, mut seems_flat) = (vec![0; self.points.len()], false);
         for (id, facet) in (0..).zip(&self.facets) {
             let others = facet.beyond.iter().enumerate();
