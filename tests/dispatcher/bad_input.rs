@@ -452,3 +452,27 @@ fn half_spaces_and_cells_are_left_unanswered() {
         }
     }
 }
+
+/// Parry's own routine asserts that the margin is not negative.
+#[test]
+fn no_margin_of_nearest_points_panics() {
+    let dispatcher = IsaGjkDispatcher::default();
+    let samples = shape_samples();
+    for [a, b] in samples
+        .iter()
+        .flat_map(|a| samples.iter().map(move |b| [a, b]))
+    {
+        let pose = Pose::translation(9.0, 0.0, 0.0);
+        for margin in [-1.0, -0.0, Real::NEG_INFINITY, Real::NAN] {
+            let found = dispatcher.closest_points(&pose, &*a.shape, &*b.shape, margin);
+            let is_near = matches!(found, Ok(ClosestPoints::WithinMargin(..)));
+            let may_be_near = margin.is_nan();
+            assert!(
+                may_be_near || !is_near,
+                "{} and {} within {margin}",
+                a.name,
+                b.name
+            );
+        }
+    }
+}

@@ -66,7 +66,8 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
     ) -> Result<ClosestPoints, Unsupported> {
         scene::closest_points(pos12, g1, g2, max_dist)
             .or_else(|_| parts::closest_points(self, pos12, g1, g2, max_dist))
-            .or_else(|_| self.fallback.closest_points(pos12, g1, g2, max_dist))
+            // Parry asserts that it is not negative.
+            .or_else(|_| (self.fallback).closest_points(pos12, g1, g2, max_dist.max(0.0)))
     }
 
     fn cast_shapes(
