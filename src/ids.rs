@@ -4,7 +4,7 @@ use std::fmt;
 use std::num::NonZeroU64;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::mix::GOLDEN;
+use crate::mix::extended;
 
 /// Defines an id, which is a number of 30 bits at most.
 macro_rules! id {
@@ -96,12 +96,15 @@ impl ShapeId {
     /// of 2^-62.
     #[inline]
     pub(crate) fn described_by<const N: usize>(kind: ShapeKind, numbers: [f64; N]) -> Self {
-        let mix = |hash: u64, number: f64| {
-            let product = u128::from(hash ^ number.to_bits()) * u128::from(GOLDEN);
-            (product >> 64) as u64 ^ product as u64
-        };
-        let hash = numbers.into_iter().fold(kind as u64, mix);
+        let words = numbers.into_iter().map(f64::to_bits);
+        let hash = words.fold(kind as u64, extended);
         Self(NonZeroU64::MIN | DESCRIBED | hash)
+    }
+
+    /// The number that it is.
+    #[inline]
+    pub(crate) fn number(self) -> u64 {
+        self.0.get()
     }
 
     /// One that no shape has.

@@ -1,6 +1,8 @@
 //! Constants that steer a choice between correct alternatives, each with what it was tuned for. No proof and
 //! no promised accuracy depends on them. The constants that bear on accuracy are in `tolerance`.
 
+use crate::tolerance::{BOWL_LOSS, KEPT_DRIFT};
+
 /// The tangent of the angle by which a failing axis is tilted, towards the expected next facet. Chosen for
 /// hulls of a hundred vertices, whose dihedral angles are about this large.
 pub(crate) const TILT: f64 = 0.2;
@@ -161,3 +163,12 @@ pub(crate) const BEARING_WIDTH: f32 = 0.1;
 /// Contacts of a part are equally deep if their distances differ by less than this share of the extent of the
 /// contacts: less than the promised accuracy of a depth.
 pub(crate) const ONE_DEPTH: f32 = 3e-6;
+
+/// Contacts that stay as they are belong to the present shapes if none is farther from a shape than this share of the
+/// smaller shape's radius. Kept contacts may leave their places by half of it.
+pub(crate) const OWN_PLACE: f64 = 2.0 * KEPT_DRIFT;
+/// And if some contact is beneath both supporting planes by no more than this: a few times what climbs may lose on a
+/// scanned plate. A tenth of a degree of another slope is more.
+pub(crate) const OWN_HEIGHT: f64 = 5.0 * BOWL_LOSS;
+/// Such contacts and their normals are rounded to f32, and so off by some roundings of the larger shape's coordinates.
+pub(crate) const OWN_ROUNDING: f64 = 1e-6;

@@ -15,12 +15,16 @@ use crate::slots::Slots;
 use crate::support::{Cso, Support};
 use crate::tolerance::PROOF_MARGIN;
 
-/// 4,096 slots, which take 256 KiB.
+/// 4,096 slots, which take 288 KiB.
 const SLOT_BITS: u32 = 12;
 
 /// Distances of many pairs. A key gives the slot; the shapes tell whether the distance in it is that of the pair.
 #[derive(Default)]
-pub(crate) struct StillCache(Slots<Certified, SLOT_BITS>);
+pub(crate) struct StillCache {
+    certified: Slots<Certified, SLOT_BITS>,
+    /// Hashes of contacts, and of the shapes that they were found to belong to.
+    own_contacts: Slots<u64, SLOT_BITS>,
+}
 
 /// Fills one cache line.
 #[derive(Clone, Copy, Default)]
@@ -71,12 +75,24 @@ impl StillCache {
     /// Whether the shapes of a pair certainly have this signed distance, up to a tolerance.
     #[inline]
     pub fn proves(&self, pair: &StillPair, distance: f64, tolerance: f64) -> bool {
-        let Some(known) = self.0.get(pair.key) else {
+        let Some(known) = self.certified.get(pair.key) else {
             return false;
         };
         known.shapes == pair.shapes.map(Some)
             && is_nearly_unit(pair.rotation)
             && (known.distance - distance).abs() + known.motion_to(pair) <= tolerance
+    }
+
+    /// Whether contacts with this hash were found to belong to the shapes of a pair. Contacts and shapes for which this is
+    /// wrong occur with a probability of 2^-64.
+    #[inline]
+    pub fn are_own(&self, key: u64, contacts: u64) -> bool {
+        self.own_contacts.get(key) == Some(&contacts)
+    }
+
+    /// Notes that contacts belong to the shapes of a pair.
+    pub fn note_own(&mut self, key: u64, contacts: u64) {
+        *self.own_contacts.get_or_allocate(key) = contacts;
     }
 
     /// Stores a signed distance that was certified at the present pose.
@@ -85,7 +101,7 @@ impl StillCache {
         if !is_nearly_unit(pair.rotation) {
             return;
         }
-        *self.0.get_or_allocate(pair.key) = Certified {
+        *self.certified.get_or_allocate(pair.key) = Certified {
             rotation: pair.rotation,
             place: pair.place,
             distance,

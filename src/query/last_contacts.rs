@@ -45,6 +45,15 @@ impl LastContacts {
         first_least(self.distances(normal).to_array())
     }
 
+    /// The points on both shapes, each in the frame of its shape.
+    pub fn points(&self, pose: &RelativePose) -> [[DVec3; LANES]; 2] {
+        let on_2 = pose.points_to_2(self.on_1 + self.between);
+        [self.on_1, on_2].map(|points| {
+            let [x, y, z] = points.0.map(|coordinate| coordinate.to_array());
+            std::array::from_fn(|i| DVec3::new(x[i], y[i], z[i]))
+        })
+    }
+
     /// The mean of the points on shape 1.
     #[inline]
     pub fn middle(&self) -> DVec3 {

@@ -4,11 +4,11 @@
 use std::thread;
 
 use isa_gjk::IsaGjkDispatcher;
-use parry3d::math::{Pose, Vector};
+use parry3d::math::{Pose, Rotation, Vector};
 use parry3d::shape::{ConvexPolyhedron, SharedShape};
 use testkit::cases::Hull;
-use testkit::generate::{Rng, hull_of};
-use testkit::memory::{Memory, cold_manifold};
+use testkit::generate::{Rng, hull_of, prepared};
+use testkit::memory::{Manifold, Memory, cold_manifold};
 use testkit::report::Report;
 use testkit::scene::random_scene;
 
@@ -176,4 +176,83 @@ fn the_same_points_with_other_edges_are_another_shape() {
     }
     assert!(came_again > 10, "the allocator reused no address");
     assert!(in_contact > 30, "only {in_contact} contacts");
+}
+
+/// A block of a plain hull, of a prepared one, or a cuboid.
+fn block(kind: usize, [x, y, z]: [f32; 3]) -> SharedShape {
+    let side = |i: u32, bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+    let corner = |i: u32| Vector::new(x * side(i, 0), y * side(i, 1), z * side(i, 2));
+    let plain = hull_of(&(0..8).map(corner).collect::<Vec<_>>())
+        .expect("a block is convex")
+        .shape;
+    match kind {
+        0 => plain,
+        1 => prepared(&plain),
+        _ => SharedShape::cuboid(x, y, z),
+    }
+}
+
+/// The contacts of a body that rests on one ground, which then becomes another one.
+fn after_exchange(body: &SharedShape, grounds: [&SharedShape; 2], pose: &Pose) -> Manifold {
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut memory = Memory::default();
+    let [before, after] = grounds;
+    for _ in 0..3 {
+        let held = memory.update(&dispatcher, pose, [before, body], 0.02);
+        assert!(held.is_some_and(|manifold| !manifold.points.is_empty()));
+    }
+    let warm = memory.update(&dispatcher, pose, [after, body], 0.02);
+    warm.expect("supported").clone()
+}
+
+/// Depth and normal stay the same, but the contacts would be in the air.
+#[test]
+fn nothing_rests_beside_a_ground_that_has_shrunk() {
+    for kind in 0..3 {
+        let bodies = [
+            ("hull", block(0, [0.5; 3])),
+            ("hull shape", block(1, [0.5; 3])),
+            ("cylinder", SharedShape::cylinder(0.5, 0.5)),
+            ("cone", SharedShape::cone(0.5, 0.5)),
+        ];
+        for (name, body) in bodies {
+            let grounds = [2.0, 0.3].map(|half| block(kind, [half, 0.5, half]));
+            let pose = Pose::translation(0.6, 0.999, 0.0);
+            let warm = after_exchange(&body, grounds.each_ref(), &pose);
+            for point in &warm.points {
+                let place = point.local_p1;
+                let outside = place.x.abs().max(place.z.abs()) - 0.3;
+                assert!(outside < 1e-5, "{name} on ground {kind}: {outside} outside");
+            }
+            assert!(warm.points.len() > 2, "{name} on ground {kind}");
+        }
+    }
+}
+
+/// The plane turns about the only vertex in contact, so that its depth stays the same.
+#[test]
+fn a_ground_that_is_tilted_under_a_tip_has_its_own_normal() {
+    let tip = [
+        Vector::ZERO,
+        Vector::new(-0.5, 1.0, -0.5),
+        Vector::new(0.5, 1.0, -0.5),
+        Vector::new(0.0, 1.0, 0.5),
+    ];
+    let body = hull_of(&tip).expect("a tetrahedron is convex").shape;
+    let tilted = Vector::new(0.1, 1.0, 0.2).normalize();
+    let planes = [Vector::Y, tilted].map(SharedShape::halfspace);
+    let warm = after_exchange(&body, planes.each_ref(), &Pose::IDENTITY);
+    assert!(warm.local_n1.distance(tilted) < 1e-6, "{}", warm.local_n1);
+    // Blocks whose upper sides meet where the tip is.
+    let turn = Rotation::from_rotation_arc(Vector::Y, tilted);
+    let lowered = |turn: Rotation| {
+        let upright = block(0, [1.0, 0.5, 1.0]);
+        let polyhedron = upright.as_convex_polyhedron().expect("a hull");
+        let points = polyhedron.points().iter();
+        let points: Vec<Vector> = points.map(|p| turn * (*p - Vector::Y * 0.5)).collect();
+        hull_of(&points).expect("a block is convex").shape
+    };
+    let blocks = [Rotation::IDENTITY, turn].map(lowered);
+    let warm = after_exchange(&body, blocks.each_ref(), &Pose::IDENTITY);
+    assert!(warm.local_n1.distance(tilted) < 1e-5, "{}", warm.local_n1);
 }

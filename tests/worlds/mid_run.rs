@@ -209,3 +209,34 @@ fn parts_leave_no_contacts_behind() {
         two.assert_present(&format!("turn {turn}"));
     }
 }
+
+/// A platform shrinks under a body at rest, whose middle is no longer above it. Height and normal stay the same.
+#[test]
+fn what_rests_on_a_platform_falls_when_that_shrinks() {
+    let block = |half: [Real; 3]| {
+        let side = |i: u32, bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+        let corner = |i| Vector::from(half) * Vector::new(side(i, 0), side(i, 1), side(i, 2));
+        SharedShape::convex_hull(&(0..8).map(corner).collect::<Vec<_>>()).expect("a block")
+    };
+    for body in [block([0.5; 3]), SharedShape::cylinder(0.5, 0.5)] {
+        let mut world = PhysicsWorld {
+            narrow_phase: narrow_phase(&IsaGjkDispatcher::default()),
+            ..PhysicsWorld::default()
+        };
+        let platform = world.insert_collider(ColliderBuilder::new(block([2.0, 0.5, 2.0])), None);
+        let place = RigidBodyBuilder::dynamic().translation(Vector::new(0.6, 1.001, 0.0));
+        let body = world.insert(place, ColliderBuilder::new(body)).0;
+        let mut height = |platform_half: Real| {
+            let shape = block([platform_half, 0.5, platform_half]);
+            world.colliders[platform].set_shape(shape);
+            world.bodies[body].wake_up(true);
+            (0..120).for_each(|_| world.step());
+            world.bodies[body].translation().y
+        };
+        let (rests, falls) = (height(2.0), height(0.3));
+        assert!(
+            (rests - 1.0).abs() < 1e-3 && falls < 0.0,
+            "{rests}, {falls}"
+        );
+    }
+}

@@ -10,6 +10,7 @@ use super::HullShape;
 use crate::gjk::{self, Outcome};
 use crate::hull::Hull;
 use crate::pose::RelativePose;
+use crate::primitive::Point;
 use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{Cso, FaceId, Polytope, Support, VertexId};
@@ -84,19 +85,6 @@ impl HullShape {
         let (face, height) = self.nearest_plane(point);
         let on_face = point - height * self.hull().face_normal(face);
         (PointProjection::new(height <= 0.0, on_face.as_vec3()), face)
-    }
-}
-
-/// The origin as a shape.
-struct Point;
-
-impl Support for Point {
-    fn support(&self, _: DVec3, _: VertexId, _: &mut Cost) -> (DVec3, VertexId) {
-        (DVec3::ZERO, VertexId::default())
-    }
-
-    fn radius(&self) -> f64 {
-        0.0
     }
 }
 

@@ -143,10 +143,19 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         still: Option<&Still>,
         workspace: &mut Workspace,
     ) -> bool {
-        if let Some(still) = still.filter(|still| still.shows(self.least)) {
+        if let Some(still) = still.filter(|still| still.shows(self.least))
+            && let Some(last) = self.last
+        {
+            if !still.is_of(self.cso, self.border_radii, last) {
+                let near = Near {
+                    last: None,
+                    ..*self
+                };
+                return near.update_contacts(constraints, manifold, None, workspace);
+            }
             manifold.manifold.hold(still);
             let core_distance = self.least + self.border_radii[0] + self.border_radii[1];
-            still.store(&mut workspace.still_cache, core_distance);
+            still.store(&mut workspace.still_cache, core_distance, last);
             return true;
         }
         let patch = &mut workspace.curved.patch;

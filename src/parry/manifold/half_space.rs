@@ -58,15 +58,29 @@ impl HalfSpaceUpdate<'_, '_> {
             self.manifold.set_axis(near.normal, vertices);
             return Stage::Axis;
         }
-        let borders: f64 = self.pair.border_radii.iter().sum();
-        let signed_distance = near.signed_distance - borders;
-        if let Some(still) = self.still.filter(|still| still.shows(signed_distance)) {
-            self.manifold.manifold.hold(still);
-            still.store(cache, near.signed_distance);
-            return Stage::Kept;
-        }
-        let is_kept = self.update_contacts(&near, scratch);
+        let is_kept =
+            self.is_held(near.signed_distance, cache) || self.update_contacts(&near, scratch);
         if is_kept { Stage::Kept } else { Stage::Feature }
+    }
+
+    /// Leaves the contacts as they are, if that is right at this signed distance of the cores. Returns whether it is.
+    #[inline]
+    fn is_held(&mut self, core_distance: f64, cache: &mut StillCache) -> bool {
+        let borders: f64 = self.pair.border_radii.iter().sum();
+        let still = self
+            .still
+            .filter(|still| still.shows(core_distance - borders));
+        let (Some(still), Some(last)) = (still, &*self.last) else {
+            return false;
+        };
+        let is_own = still.is_of_half_space(self.pair, self.pose, last);
+        if is_own {
+            self.manifold.manifold.hold(still);
+            still.store(cache, core_distance, last);
+        } else {
+            *self.last = None;
+        }
+        is_own
     }
 
     /// Where the search for the deepest vertex begins. If several tie, this one is the answer.

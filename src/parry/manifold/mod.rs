@@ -8,6 +8,7 @@ mod inherit;
 mod kept;
 mod kernel_manifold;
 mod normals;
+mod own_contacts;
 mod packed_feature;
 mod polytopes;
 mod sink;

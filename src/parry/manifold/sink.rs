@@ -74,8 +74,8 @@ impl<'a, 'm, B: Polytope> ManifoldSink<'a, 'm, B> {
     /// Stores the distance of a pair at rest.
     #[inline]
     pub fn store_held(&self, cache: &mut StillCache) {
-        if let (Some(still), Some(distance)) = (self.still, self.held_at) {
-            still.store(cache, distance);
+        if let (Some(still), Some(distance), Some(last)) = (self.still, self.held_at, &self.last) {
+            still.store(cache, distance, last);
         }
     }
 
@@ -136,11 +136,15 @@ impl<B: Polytope> Sink for ManifoldSink<'_, '_, B> {
         let [border_1, border_2] = self.pair.border_radii;
         if let Some(still) = self.still
             && still.shows(near.signed_distance - (border_1 + border_2))
+            && let Some(last) = self.last.as_ref()
         {
-            manifold.manifold.hold(still);
-            self.is_kept = true;
-            self.held_at = Some(near.signed_distance);
-            return;
+            if still.is_of(self.contacts.cso, self.pair.border_radii, last) {
+                manifold.manifold.hold(still);
+                self.is_kept = true;
+                self.held_at = Some(near.signed_distance);
+                return;
+            }
+            *self.last = None;
         }
         let last = self.last.as_ref();
         self.is_kept = self.contacts.update_contacts(&mut manifold, last, near);

@@ -5,13 +5,20 @@
 //! contact is then reported as it is measured along the normal. A query certifies the distance, or a certificate of an
 //! earlier pose does: what the manifold becomes is the same.
 
+use glam::DVec3;
+
 use super::erased::ErasedManifold;
 use super::kernel_manifold::KernelManifold;
+use super::own_contacts::{ContactsOnShape, some_is_on_both};
+use crate::mix::extended;
+use crate::parry::convert::HalfSpace;
 use crate::parry::order::PairOrder;
+use crate::parry::pair::Pair;
 use crate::parry::still_cache::{StillCache, StillPair};
 use crate::pose::RelativePose;
 use crate::query::{LastContacts, first_least};
 use crate::simd::LANES;
+use crate::support::{Cso, Support};
 use crate::tolerance::{DEPTH_ERROR, KEPT_DRIFT, STILL_DEPTH, STILL_TILT};
 
 /// Contacts of a pair at rest, measured along the stored normal at the present pose.
@@ -20,6 +27,10 @@ pub(super) struct Still {
     /// The least of them, and thus that of the shapes, if nothing has to change.
     least: f64,
     pair: StillPair,
+    /// The normals of both shapes.
+    normals: [DVec3; 2],
+    /// Whether the contacts are known to belong to the shapes.
+    are_own: bool,
 }
 
 impl Still {
@@ -34,7 +45,7 @@ impl Still {
         still: &mut Option<Self>,
     ) {
         manifold.read_contacts(pose, last);
-        if let (Some(last), Some([normal, _])) = (last, manifold.normals())
+        if let (Some(last), Some(normals @ [normal, _])) = (last, manifold.normals())
             && last.are_within(normal, KEPT_DRIFT * pair.radius)
         {
             let distances = last.distances(normal).to_array();
@@ -43,6 +54,8 @@ impl Still {
                 distances,
                 least,
                 pair,
+                normals,
+                are_own: false,
             });
         }
     }
@@ -61,15 +74,80 @@ impl Still {
         distance + tolerance <= max_distance && cache.proves(&self.pair, distance, tolerance)
     }
 
+    /// Looks up whether the contacts belong to the shapes.
+    #[inline]
+    pub fn find_own(&mut self, cache: &StillCache, last: &LastContacts) {
+        self.are_own = cache.are_own(self.pair.key, self.hash(last));
+    }
+
+    /// Tells these contacts of these shapes from others.
+    fn hash(&self, last: &LastContacts) -> u64 {
+        let ids = self.pair.shapes.map(|id| id.number());
+        let vectors = [last.middle(), self.normals[0], self.normals[1]];
+        let numbers = vectors.iter().flat_map(|v| v.to_array());
+        let words = ids.into_iter().chain(numbers.map(f64::to_bits));
+        words.fold(0, extended)
+    }
+
     /// Whether the contacts stay as they are if the shapes have this signed distance.
     #[inline]
     pub fn shows(&self, signed_distance: f64) -> bool {
         (self.least - signed_distance).abs() <= STILL_DEPTH * self.pair.radius
     }
 
-    /// Stores the signed distance of the cores, which was certified.
-    pub fn store(&self, cache: &mut StillCache, core_distance: f64) {
+    /// Whether the contacts belong to the shapes of the pair.
+    #[inline]
+    pub fn is_of<A: Support, B: Support>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        border_radii: [f64; 2],
+        last: &LastContacts,
+    ) -> bool {
+        self.are_own
+            || self.depths_match(cso.pose, border_radii, last, |[on_1, on_2]| {
+                Some([on_1.depths(cso.shape_1)?, on_2.depths(cso.shape_2)?])
+            })
+    }
+
+    /// The same for a half-space.
+    #[inline]
+    pub fn is_of_half_space(
+        &self,
+        pair: &Pair<'_, HalfSpace>,
+        pose: &RelativePose,
+        last: &LastContacts,
+    ) -> bool {
+        self.are_own
+            || self.depths_match(pose, pair.border_radii, last, |[on_1, on_2]| {
+                Some([on_1.depths(pair.hull)?, on_2.depths_in(pair.other)?])
+            })
+    }
+
+    /// Whether the contacts have the `depths` of contacts that belong to the shapes.
+    #[inline(never)]
+    fn depths_match(
+        &self,
+        pose: &RelativePose,
+        border_radii: [f64; 2],
+        last: &LastContacts,
+        depths: impl FnOnce([ContactsOnShape<'_>; 2]) -> Option<[[f64; LANES]; 2]>,
+    ) -> bool {
+        let points = last.points(pose);
+        let on = |side: usize| ContactsOnShape {
+            points: &points[side],
+            normal: self.normals[side],
+            border_radius: border_radii[side],
+            radius: self.pair.radius,
+        };
+        depths([on(0), on(1)]).is_some_and(|depths| some_is_on_both(depths, self.pair.radius))
+    }
+
+    /// Stores the signed distance of the cores, which was certified, and that the contacts belong to the shapes.
+    pub fn store(&self, cache: &mut StillCache, core_distance: f64, last: &LastContacts) {
         cache.store(&self.pair, core_distance);
+        if !self.are_own {
+            cache.note_own(self.pair.key, self.hash(last));
+        }
     }
 }
 

@@ -142,6 +142,8 @@ impl<'a> UpdateManifold<'a> {
         if is_proved {
             self.manifold.hold(still);
             self.stats.record_free(Stage::Still);
+        } else if let Some(last) = last {
+            still.find_own(still_cache, last);
         }
         is_proved
     }
