@@ -1,9 +1,12 @@
 //! Shapes as the kernels see them: extreme points with vertex ids, and the faces of polytopes.
 
+mod cso_vertex;
+
 use std::{cmp::Ordering, iter};
 
 use glam::DVec3;
 
+pub use self::cso_vertex::CsoVertex;
 pub use crate::corners::{FaceCorners, FacePoints};
 pub(crate) use crate::ids::ShapeKind;
 pub use crate::ids::{EdgeId, FaceId, ShapeId, VertexId};
@@ -49,6 +52,12 @@ pub trait Support {
     fn extent_bound(&self, dir: DVec3, cost: &mut Cost) -> Option<f64> {
         let _ = (dir, cost);
         None
+    }
+
+    /// Whether contacts roll over a round surface if their outward unit normal turns from one to another.
+    #[inline]
+    fn rolls(&self, _from: DVec3, _to: DVec3) -> bool {
+        false
     }
 
     /// Tells the shape from all others, if it has such an id.
@@ -155,26 +164,6 @@ pub trait Polytope: Support {
     fn edge_ends(&self, edge: EdgeId) -> Option<[VertexId; 2]>;
 }
 
-/// A vertex of the Minkowski difference: its position, and the vertices that it is the difference of (frame
-/// 1).
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CsoVertex {
-    /// `on_1 - on_2`.
-    pub w: DVec3,
-    /// The point of shape 1.
-    pub on_1: DVec3,
-    /// The vertices of the two shapes.
-    pub ids: [VertexId; 2],
-}
-
-impl CsoVertex {
-    /// The point of shape 2, in frame 1.
-    #[inline]
-    pub fn on_2(&self) -> DVec3 {
-        self.on_1 - self.w
-    }
-}
-
 /// The Minkowski difference of shape 1 and shape 2 (the configuration space obstacle). It is never built, and
 /// only its extreme points are computed. Everything is in frame 1.
 pub struct Cso<'a, A, B> {
@@ -187,6 +176,12 @@ pub struct Cso<'a, A, B> {
 }
 
 impl<A: Support, B: Support> Cso<'_, A, B> {
+    /// Whether one of the shapes rolls over the other if their outward normals, each in its own frame, turn.
+    #[inline]
+    pub fn rolls(&self, from: [DVec3; 2], to: [DVec3; 2]) -> bool {
+        self.shape_1.rolls(from[0], to[0]) || self.shape_2.rolls(from[1], to[1])
+    }
+
     /// A point that is extreme in direction `dir`. The two climbs begin at `start`.
     #[inline(always)]
     pub fn support(&self, dir: DVec3, start: [VertexId; 2], cost: &mut Cost) -> CsoVertex {

@@ -136,6 +136,11 @@ pub(crate) const ROCKING_COS: f64 = 0.994_522;
 /// that rolls from facet to facet. If its contacts stayed behind, it would not roll straight on.
 pub(crate) const ROCKING_RISE: f64 = 1e-3;
 
+/// Contacts on a round surface keep their places while the normal turns about its axis by less than this angle from
+/// one update to the next, in radians. Bodies that tremble turn by less. Contacts that turn with a rolling body lag
+/// behind its lowest place, and push it on until it rolls by this angle in each step.
+pub(crate) const ROLLING: f64 = 3e-4;
+
 /// Manifolds whose normals have at least this cosine lie in one plane: the angle, five degrees, up to which
 /// rapier merges them.
 pub(crate) const ONE_PLANE_COS: f32 = 0.996;

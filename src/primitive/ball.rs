@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::rolling::turns;
 use crate::stats::Cost;
 use crate::support::{
     EdgeId, FaceCorners, FaceId, Polytope, ShapeId, ShapeKind, Support, VertexId,
@@ -31,6 +32,11 @@ impl Support for Ball {
     fn support(&self, _: DVec3, _: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
         cost.supports += 1;
         (DVec3::ZERO, VertexId::default())
+    }
+
+    #[inline]
+    fn rolls(&self, from: DVec3, to: DVec3) -> bool {
+        turns(from, to)
     }
 
     #[inline]

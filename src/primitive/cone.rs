@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::rim::Rim;
+use super::rolling::turns_about;
 use crate::stats::Cost;
 use crate::support::{ShapeId, ShapeKind, Support, VertexId};
 
@@ -69,6 +70,11 @@ impl Support for Cone {
     #[inline]
     fn center(&self) -> DVec3 {
         self.center
+    }
+
+    #[inline]
+    fn rolls(&self, from: DVec3, to: DVec3) -> bool {
+        turns_about(DVec3::Y, from, to)
     }
 
     #[inline]

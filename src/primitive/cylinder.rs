@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::rim::Rim;
+use super::rolling::turns_about;
 use crate::stats::Cost;
 use crate::support::{ShapeId, ShapeKind, Support, VertexId};
 
@@ -39,6 +40,11 @@ impl Support for Cylinder {
         cost.supports += 1;
         let height = self.half_height.copysign(dir.y);
         (self.rim.support(dir, height).0, VertexId::default())
+    }
+
+    #[inline]
+    fn rolls(&self, from: DVec3, to: DVec3) -> bool {
+        turns_about(DVec3::Y, from, to)
     }
 
     #[inline]

@@ -10,6 +10,7 @@ mod cuboid;
 mod cylinder;
 mod point;
 mod rim;
+mod rolling;
 mod segment;
 mod triangle;
 

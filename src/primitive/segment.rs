@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::rolling::turns_about;
 use crate::stats::Cost;
 use crate::support::{
     EdgeId, FaceCorners, FaceId, Polytope, ShapeId, ShapeKind, Support, VertexId,
@@ -64,6 +65,11 @@ impl Support for Segment {
     #[inline]
     fn center(&self) -> DVec3 {
         self.ends[0].midpoint(self.ends[1])
+    }
+
+    #[inline]
+    fn rolls(&self, from: DVec3, to: DVec3) -> bool {
+        turns_about(self.ends[1] - self.ends[0], from, to)
     }
 
     #[inline]

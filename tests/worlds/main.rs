@@ -12,6 +12,7 @@ mod logs;
 mod mid_run;
 mod prepared_shapes;
 mod resting;
+mod rolling;
 mod scenes;
 #[cfg(feature = "serde-serialize")]
 mod snapshots;

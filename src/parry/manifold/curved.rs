@@ -171,12 +171,13 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         let near = self.proximity();
         let normals = Normals::of(&near, self.cso.pose);
         let radius = self.cso.min_radius();
-        let kept = manifold.keep_places(self.last, self.least, &normals, radius);
-        if kept.is_none() {
+        let is_kept = !manifold.has_rolled(self.cso, normals.exact)
+            && (manifold.keep_places(self.last, self.least, &normals, radius)).is_some();
+        if !is_kept {
             patch.complete_beside_deepest(self.cso, self.border_radii);
             manifold.set_contacts(normals.rounded, &self.contacts(patch));
         }
-        kept.is_some()
+        is_kept
     }
 
     fn contacts(&self, patch: &Patch) -> Contacts {

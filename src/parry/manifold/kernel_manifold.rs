@@ -155,6 +155,12 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
         Some([unit(first)?, unit(second)?])
     }
 
+    /// Whether one of the shapes has rolled over the other since the normals were stored.
+    #[inline]
+    pub fn has_rolled<A: Support, B: Support>(&self, cso: &Cso<'_, A, B>, now: [DVec3; 2]) -> bool {
+        self.normals().is_some_and(|before| cso.rolls(before, now))
+    }
+
     /// The distance of the deepest contact in the previous frame.
     pub fn least_distance(&self) -> Option<f32> {
         let points = self.manifold.points();

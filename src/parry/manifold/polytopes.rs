@@ -42,7 +42,8 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
             };
             return contacts.update_constrained(manifold, last, near, &normals);
         }
-        let is_kept = manifold.keep_contacts(last, near, &normals, self.cso.min_radius());
+        let is_kept = !manifold.has_rolled(self.cso, normals.exact)
+            && manifold.keep_contacts(last, near, &normals, self.cso.min_radius());
         if !is_kept {
             let mut contacts = manifold::contacts(self.cso, near, self.max_distance, self.scratch);
             if manifold.border_radii != [0.0; 2] && contacts.len > 1 {
@@ -75,7 +76,10 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
             let [normal, _] = pair.order.to_kernel(corrected.normals);
             normal.abs_diff_eq(normals.rounded[0], UNCORRECTED)
         });
-        if is_as_it_was && manifold.keep_contacts(last, near, normals, cso.min_radius()) {
+        if is_as_it_was
+            && !manifold.has_rolled(cso, normals.exact)
+            && manifold.keep_contacts(last, near, normals, cso.min_radius())
+        {
             return true;
         }
         let contacts = if is_as_it_was {
