@@ -177,3 +177,6 @@ pub(crate) const OWN_PLACE: f64 = 2.0 * KEPT_DRIFT;
 pub(crate) const OWN_HEIGHT: f64 = 5.0 * BOWL_LOSS;
 /// Such contacts and their normals are rounded to f32, and so off by some roundings of the larger shape's coordinates.
 pub(crate) const OWN_ROUNDING: f64 = 1e-6;
+
+/// The boundary of a half-space is a disc of so many radii under a curved shape, whose places are all above it.
+pub(crate) const WIDE_PLANE: f64 = 4.0;

@@ -146,7 +146,7 @@ impl Patch {
     }
 
     /// Adds the places where whole pieces overlap.
-    fn add_common(&mut self) {
+    pub(super) fn add_common(&mut self) {
         match self.pieces {
             [Piece::Flat(a), Piece::Flat(b)] => match [a, b].map(|flat| flat.outline.circle()) {
                 [Some(first), Some(second)] => self.add_two_discs([&a, &b], [first, second]),

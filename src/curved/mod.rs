@@ -23,6 +23,7 @@ mod flat_sides;
 mod lines;
 mod on_crossing;
 mod on_flat;
+mod on_plane;
 mod on_ruled;
 mod on_segment;
 mod outline;

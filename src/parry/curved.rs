@@ -1,16 +1,19 @@
 //! Pairs without a hull: cylinders and cones with other shapes, and two capsules.
 
+use parry3d::math::Real;
 use parry3d::query::Unsupported;
-use parry3d::shape::{Shape, ShapeType};
+use parry3d::shape::{HalfSpace as ParryHalfSpace, Shape, ShapeType};
 
 use crate::curved::SurfacePieces;
+use crate::parry::balls::update_ball;
 use crate::parry::capsules::update_capsules;
-use crate::parry::convert::Core;
+use crate::parry::convert::{self, Core, HalfSpace};
 use crate::parry::manifold::UpdateManifold;
 use crate::parry::operand::is_hull;
 use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
 use crate::parry::workspace::ThreadWorkspace;
+use crate::primitive::Revolved;
 
 /// Whether a shape is a cylinder or a cone.
 fn is_curved(shape: &dyn Shape) -> bool {
@@ -49,6 +52,9 @@ fn update_curved(
     update: &mut UpdateManifold<'_>,
 ) -> Result<(), Unsupported> {
     let [first, second] = order.to_kernel(shapes);
+    if let Some(half_space) = first.as_shape() {
+        return update_on_half_space(order, half_space, second, update);
+    }
     // One by one: as parts of a pair they would be copied.
     let first = Core::of(first);
     let second = Core::of(second);
@@ -67,6 +73,40 @@ fn update_curved(
     }
 }
 
+/// Parry's routine is exact for shapes without a border.
+fn update_on_half_space(
+    order: PairOrder,
+    half_space: &ParryHalfSpace,
+    solid: &dyn Shape,
+    update: &mut UpdateManifold<'_>,
+) -> Result<(), Unsupported> {
+    let half_space = &convert::half_space(half_space).ok_or(Unsupported)?;
+    match Core::of(solid) {
+        Some((Core::Cylinder(solid), border)) if border > 0.0 => {
+            on_half_space(order, half_space, (&solid, border), update)
+        }
+        Some((Core::Cone(solid), border)) if border > 0.0 => {
+            on_half_space(order, half_space, (&solid, border), update)
+        }
+        _ => Err(Unsupported),
+    }
+}
+
+fn on_half_space(
+    order: PairOrder,
+    half_space: &HalfSpace,
+    (solid, border): (&impl SurfacePieces, Real),
+    update: &mut UpdateManifold<'_>,
+) -> Result<(), Unsupported> {
+    let pair = Pair {
+        hull: half_space,
+        other: solid,
+        border_radii: [0.0, border.into()],
+        order,
+    };
+    ThreadWorkspace::with(|thread| update.update_on_plane(&pair, &mut thread.workspace))
+}
+
 /// The rest of an update, for cores whose types are known.
 struct PairUpdate<'u, 'a> {
     border_radii: [f64; 2],
@@ -75,10 +115,13 @@ struct PairUpdate<'u, 'a> {
 }
 
 impl PairUpdate<'_, '_> {
-    /// Parry's routine for balls is exact.
-    fn with(&mut self, first: &Core, second: &impl SurfacePieces) -> Result<(), Unsupported> {
+    fn with(
+        &mut self,
+        first: &Core,
+        second: &(impl SurfacePieces + Revolved),
+    ) -> Result<(), Unsupported> {
         match first {
-            Core::Ball(_) => Err(Unsupported),
+            Core::Ball(_) => update_ball(second, self.border_radii, self.order, self.update),
             Core::Segment(first) => self.with_both(first, second),
             Core::Triangle(first) => self.with_both(first, second),
             Core::Cuboid(first) => self.with_both(first, second),

@@ -1,6 +1,7 @@
 //! The interface to rapier and parry: which shapes are ours, their manifolds, and scene queries.
 
 mod apart_cache;
+mod balls;
 mod capsules;
 mod composite;
 mod constraints;

@@ -29,6 +29,8 @@ fn partners(rng: &mut Rng, border: f32) -> Vec<Body> {
         Body::triangle(corners, border),
         Body::capsule(ends, 0.2),
         Body::hull(&points, border).expect("a solid"),
+        Body::ball(0.25),
+        Body::half_space(Vector::Y),
     ]);
     bodies
 }

@@ -8,6 +8,7 @@ mod inherit;
 mod kept;
 mod kernel_manifold;
 mod normals;
+mod on_plane;
 mod own_contacts;
 mod packed_feature;
 mod polytopes;

@@ -6,6 +6,7 @@ use parry3d::shape::Shape;
 
 use crate::curved::{CurvedAnswer, CurvedQuery, Hint, SurfacePieces};
 use crate::epa;
+use crate::parry::balls;
 use crate::parry::convert::{Core, HalfSpace};
 use crate::parry::pair::{Pair, PairVisitor, valid_pose};
 use crate::parry::scene::caller::{KernelFrame, NearestPoints};
@@ -31,6 +32,7 @@ pub(crate) fn contact(
     let shapes = [shape_1, shape_2];
     visit::shapes(shape_1, shape_2, query)
         .or_else(|_| capsules::contact(pos12, shapes, prediction))
+        .or_else(|_| balls::contact(pos12, shapes, prediction))
         .or_else(|_| convex::visit_inexact(shapes, |pair, workspace| query.convex(pair, workspace)))
 }
 
