@@ -219,13 +219,14 @@ pub(crate) const MIN_BOX_THICKNESS: f64 = 1e-7;
 /// A correction of a unit normal by less than this in each coordinate is mere rounding.
 pub(crate) const UNCORRECTED: f32 = 1e-6;
 
-/// Points on the border of a face are tested nearer to the middle of the part, by this share of the way: the
-/// upper edge of a cut is on the surface of the parts on both sides.
-pub(crate) const SEAM_INSET: f64 = 1e-3;
-
 /// A part of a compound covers a face of another one at a place if it is found this far beyond the face, as a
 /// share of the part's radius. So gaps of a thousandth of the radius, as decompositions leave them, are closed.
-pub(crate) const SEAM_STEP: f64 = 2.0 * SEAM_INSET;
+pub(crate) const SEAM_STEP: f64 = 2e-3;
+
+/// Places are tested nearer to the middle of their face, by this share of the part's radius: the upper edge of a
+/// cut is on the surface of both parts. As far as the step, the place tested is seen at 45 degrees from that edge:
+/// so it is in the other part if a cut leans by less, and not in one beside a concave crease of less than 90 degrees.
+pub(crate) const SEAM_INSET: f64 = SEAM_STEP;
 
 /// The promised accuracy: distances and depths of solids are right up to this share of the larger radius,
 /// which is 1e-5 of the diameter of the larger bounding sphere.

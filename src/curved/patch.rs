@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::outline::Flat;
 use super::piece::Piece;
 use super::place::{PiecePoint, Spot};
+use crate::query::Feature;
 use crate::support::{CsoVertex, VertexId};
 
 pub use super::place::ContactPlace;
@@ -95,6 +96,19 @@ impl Patch {
     /// Drops the places whose distance is not in `range`.
     pub fn retain(&mut self, range: RangeInclusive<f64>) {
         self.places.retain(|place| range.contains(&place.distance));
+    }
+
+    /// Leaves out corners of a flat side beside the line of a ruled surface: the ends of the line are the deepest
+    /// places over the side. Along a corrected normal, a corner that the line does not reach is beside the lowest
+    /// line of what rolls towards it.
+    pub fn leave_out_corners_beside_lines(&mut self) {
+        let side = match self.pieces {
+            [Piece::Flat(_), Piece::Line(_)] => 0,
+            [Piece::Line(_), Piece::Flat(_)] => 1,
+            _ => return,
+        };
+        let is_corner = |place: &ContactPlace| matches!(place.features[side], Feature::Vertex(_));
+        self.places.retain(|place| !is_corner(place));
     }
 
     /// The point of the first shape where the gap is narrowest, and its width.

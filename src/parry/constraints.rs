@@ -1,5 +1,7 @@
 //! Corrections of contact normals, for the internal edges of meshes.
 
+use std::cell::Cell;
+
 use glam::Vec3;
 use parry3d::math::Pose;
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
@@ -18,8 +20,20 @@ use crate::tolerance::GRAZING;
 pub(crate) enum Constraints<'a> {
     None,
     Given(&'a dyn NormalConstraints),
-    OfTriangle(&'a dyn Fn() -> Option<TrianglePseudoNormals>),
+    OfTriangle(TriangleSeams<'a>),
     OfPart(PartSeams<'a>),
+}
+
+/// One triangle of a mesh whose inner edges are corrected.
+#[derive(Clone, Copy)]
+pub(crate) struct TriangleSeams<'a> {
+    pub normals: &'a dyn Fn() -> Option<TrianglePseudoNormals>,
+    /// Whether some triangle overlaps the other shape, but has no contact along the corrected normal. Mostly a
+    /// triangle beside it has one.
+    pub is_left: &'a Cell<bool>,
+    /// Whether no triangle has a contact along a corrected normal: over the border of a mesh, the query's own
+    /// are the only ones.
+    pub is_beyond_border: bool,
 }
 
 impl<'a> Constraints<'a> {
@@ -29,6 +43,13 @@ impl<'a> Constraints<'a> {
 
     pub fn are_none(&self) -> bool {
         matches!(self, Self::None)
+    }
+
+    fn triangle(self) -> Option<TriangleSeams<'a>> {
+        match self {
+            Self::OfTriangle(triangle) => Some(triangle),
+            _ => None,
+        }
     }
 
     fn part(self) -> Option<PartSeams<'a>> {
@@ -44,7 +65,7 @@ impl<'a> Constraints<'a> {
             Self::None => f(None),
             Self::Given(constraints) => f(Some(constraints)),
             Self::OfPart(part) => f(Some(part.normals)),
-            Self::OfTriangle(compute) => match compute() {
+            Self::OfTriangle(triangle) => match (triangle.normals)() {
                 Some(normals) => f(Some(&Leaning(normals))),
                 None => f(None),
             },
@@ -97,7 +118,10 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
         for side in [0, 1] {
             let part = self.constraints[side].part();
             if part.is_some_and(|part| part.is_cut(corrected.normals[side])) {
-                corrected = self.way_out(side, f64::INFINITY)?;
+                let out = self.way_out(side, f64::INFINITY)?;
+                if !self.leads_through(side, &out) {
+                    corrected = out;
+                }
             }
         }
         let [n1, n2] = &mut corrected.normals;
@@ -107,9 +131,50 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
         is_possible.then_some(corrected)
     }
 
+    /// The contacts, or other ones if another part covers the face that they are all on. Contacts along an
+    /// outer normal are found by `along`. Normals are in the kernels' order. A way through a whole part is none:
+    /// what is inside of a ring stays there.
+    pub fn uncovered(
+        &self,
+        mut chosen: ([Vec3; 2], Contacts),
+        mut along: impl FnMut(&Corrected) -> Option<([Vec3; 2], Contacts)>,
+    ) -> Option<([Vec3; 2], Contacts)> {
+        let mut beyond = f64::INFINITY;
+        while chosen.1.len > 0
+            && let Some(side) = self.covered_side(&chosen.1, chosen.0)
+        {
+            let out = self.way_out(side, beyond)?;
+            beyond = out.least?;
+            if self.leads_through(side, &out) {
+                break;
+            }
+            chosen = along(&out)?;
+        }
+        (chosen.1.len > 0).then_some(chosen)
+    }
+
+    /// Whether a way out of a part leads through the whole part, to the side across from the other shape.
+    fn leads_through(&self, side: usize, out: &Corrected) -> bool {
+        let along = out.normals[side].as_dvec3();
+        let widths = self.order.to_caller([
+            self.cso.shape_1.extent(along) + self.cso.shape_1.extent(-along),
+            self.cso.shape_2.extent(along) + self.cso.shape_2.extent(-along),
+        ]);
+        out.least.is_some_and(|least| -least > widths[side])
+    }
+
+    /// Whether overlapping shapes that have no contact along a corrected normal are pushed apart along their own.
+    pub fn is_beyond_border(&self) -> bool {
+        let mut triangles = self.constraints.iter().filter_map(|c| c.triangle());
+        triangles.any(|triangle| {
+            triangle.is_left.set(true);
+            triangle.is_beyond_border
+        })
+    }
+
     /// Of the outer normals of a part, the one along which the shapes overlap least, if they are nearer along
     /// it than `beyond`.
-    pub fn way_out(&self, side: usize, beyond: f64) -> Option<Corrected> {
+    fn way_out(&self, side: usize, beyond: f64) -> Option<Corrected> {
         let rotation = self.pos12.rotation;
         let outer = self.constraints[side].part()?.outer_normals();
         let ways = outer.map(|normal| {
@@ -136,7 +201,7 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
 
     /// The side of a part whose contacts other parts cover, if there is one. Contacts and normals are in the
     /// kernels' order.
-    pub fn covered_side(&self, contacts: &Contacts, [n1, n2]: [Vec3; 2]) -> Option<usize> {
+    fn covered_side(&self, contacts: &Contacts, [n1, n2]: [Vec3; 2]) -> Option<usize> {
         let [c1, c2] = self.order.to_kernel(self.constraints);
         let on_1 = contacts.iter().map(|contact| contact.on_1);
         let on_2 = contacts.iter().map(|contact| contact.on_2);

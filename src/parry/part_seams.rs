@@ -75,8 +75,10 @@ impl<'a> PartSeams<'a> {
 
     /// Whether another part continues beyond a face.
     fn goes_on(self, shape: &impl Support, place: Vec3, face: Vec3) -> bool {
-        let inwards = (shape.center().as_vec3() - place) * SEAM_INSET as f32;
-        let beyond = place + inwards + face * (SEAM_STEP * shape.radius()) as f32;
+        let radius = shape.radius() as f32;
+        let to_middle = (shape.center().as_vec3() - place).reject_from_normalized(face);
+        let inwards = to_middle.clamp_length_max(SEAM_INSET as f32 * radius);
+        let beyond = place + inwards + face * (SEAM_STEP as f32 * radius);
         let point = self.pos.transform_point(beyond);
         let there = Aabb::new(point, point);
         let near = self.compound.bvh().intersect_aabb(&there);

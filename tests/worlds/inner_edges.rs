@@ -44,12 +44,17 @@ fn wheel(sides: usize, radius: Real, half_width: Real) -> SharedShape {
     SharedShape::convex_hull(&corners).expect("a prism")
 }
 
-/// The depth of the deepest contact of a mesh and a hull whose normal is upwards.
-fn depth_upwards(mesh: &SharedShape, hull: &SharedShape, pose: Pose) -> Option<Real> {
+fn manifolds(mesh: &SharedShape, mover: &SharedShape, pose: Pose) -> Vec<Manifold> {
     let mut manifolds: Vec<Manifold> = Vec::new();
     IsaGjkDispatcher::default()
-        .update_manifolds(&pose, [&**mesh, &**hull], 0.002, &mut manifolds, &mut None)
+        .update_manifolds(&pose, [&**mesh, &**mover], 0.002, &mut manifolds, &mut None)
         .expect("supported");
+    manifolds
+}
+
+/// The depth of the deepest contact of a mesh and a hull whose normal is upwards.
+fn depth_upwards(mesh: &SharedShape, hull: &SharedShape, pose: Pose) -> Option<Real> {
+    let manifolds = manifolds(mesh, hull, pose);
     let upwards = manifolds.iter().filter(|m| m.local_n1.y > 0.999);
     let depths = upwards.flat_map(|m| m.points.iter().map(|point| -point.dist));
     depths.reduce(Real::max)
@@ -74,6 +79,26 @@ fn a_plate_that_has_sunk_into_a_mesh_is_pushed_out() {
     assert!((depth - 0.093_75).abs() < 1e-5, "{depth}");
 }
 
+/// The lowest line is beyond the border, so nothing is over a triangle along the mesh's normal.
+#[test]
+fn what_rolls_over_the_border_of_a_mesh_is_not_lost() {
+    let mesh = flat_mesh(Vector::new(-1.0, 0.0, -1.0), 2.0, 8);
+    let lying = Rotation::from_rotation_x(0.5 * PI);
+    let cylinder = SharedShape::cylinder(0.1, 0.3);
+    for (mover, turn) in [(cylinder, lying), (wheel(64, 0.3, 0.1), Rotation::IDENTITY)] {
+        let height = Real::sqrt(0.3 * 0.3 - 0.1 * 0.1) - 2e-3;
+        let place = Vector::new(1.1, height, 0.013);
+        let manifolds = manifolds(&mesh, &mover, Pose::from_parts(place, turn));
+        let points = manifolds.iter().flat_map(|manifold| &manifold.points);
+        let depth = points.map(|point| -point.dist).fold(0.0, Real::max);
+        assert!(
+            (1e-3..2e-3).contains(&depth),
+            "{:?}: {depth}",
+            mover.shape_type()
+        );
+    }
+}
+
 struct Ride {
     hop: Real,
     /// The share of the speed that is left.
@@ -87,6 +112,17 @@ struct Ride {
 fn ride(
     ground: &SharedShape,
     mover: &SharedShape,
+    start: (Vector, Real, Real),
+    friction: Real,
+    steps: usize,
+) -> Ride {
+    ride_turned(ground, (mover, Vector::ZERO), start, friction, steps)
+}
+
+/// The same for a body whose shape is turned in it.
+fn ride_turned(
+    ground: &SharedShape,
+    (mover, turn): (&SharedShape, Vector),
     (start, speed, spin): (Vector, Real, Real),
     friction: Real,
     steps: usize,
@@ -102,7 +138,7 @@ fn ride(
         .linvel(Vector::new(speed, 0.0, 0.0))
         .angvel(Vector::new(0.0, 0.0, spin))
         .can_sleep(false);
-    let (body, _) = world.insert(body, collider(mover));
+    let (body, _) = world.insert(body, collider(mover).rotation(turn));
     let mut hop: Real = 0.0;
     for _ in 0..steps {
         world.step();
@@ -146,6 +182,57 @@ fn a_wheel_rolls_over_a_fine_mesh_as_over_a_floor() {
         "speed {left}, on a floor {floor_left}"
     );
     assert!(aside < 0.02, "aside {aside}");
+}
+
+/// A triangle beside the lowest line is nearest to the side of the cylinder, and all corners of a triangle are as
+/// low as each other.
+#[test]
+fn a_cylinder_rolls_over_a_fine_mesh_as_over_a_floor() {
+    let fine = flat_mesh(Vector::new(-1.0, 0.0, -1.5), 6.0, 30);
+    let wheel = (&SharedShape::cylinder(0.1, 0.3), Vector::X * (0.5 * PI));
+    for place in [0.0, 0.05, 0.13] {
+        let start = (Vector::new(place, 0.3, 0.013), 2.0, -2.0 / 0.3);
+        let Ride {
+            hop, left, aside, ..
+        } = ride_turned(&fine, wheel, start, 0.8, 120);
+        assert!(hop < 2e-3, "from {place}: hop {hop}");
+        assert!(left > 0.97, "from {place}: speed {left}");
+        assert!(aside < 0.1, "from {place}: aside {aside}");
+    }
+}
+
+/// Boxes on both sides of a convex crease, which overlap beneath it. The side of the first one on the slope leans.
+#[test]
+fn a_crease_between_overlapping_parts_does_not_stop_what_slides() {
+    let slope = Rotation::from_rotation_z(-PI / 6.0);
+    let part = |x: Real, turn: Rotation| {
+        let centre = turn * Vector::new(x + 0.25, -0.5, 0.0);
+        (
+            Pose::from_parts(centre, turn),
+            SharedShape::cuboid(0.25, 0.5, 0.5),
+        )
+    };
+    let before = (-4..0).map(|i| part(0.5 * i as Real, Rotation::IDENTITY));
+    let after = (0..8).map(|i| part(0.5 * i as Real, slope));
+    let flags = CompoundFlags::FIX_INTERNAL_EDGES;
+    let ground = SharedShape::new(Compound::with_flags(
+        before.chain(after).collect(),
+        flags,
+        None,
+    ));
+    let half = Vector::new(0.2, 0.1, 0.15);
+    for (name, mover, height) in [
+        ("cuboid hull", cuboid_hull(half), half.y),
+        ("cylinder", SharedShape::cylinder(0.1, 0.15), 0.1),
+        ("cone", SharedShape::cone(0.2, 0.15), 0.2),
+    ] {
+        for i in 0..8 {
+            let start = Vector::new(-1.0 - 0.0137 * i as Real, height, 0.013);
+            let over = ride(&ground, &mover, (start, 2.0, 0.0), 0.05, 60);
+            assert!(over.left > 1.0, "{name} {i}: speed {}", over.left);
+            assert!(over.aside < 0.05, "{name} {i}: aside {}", over.aside);
+        }
+    }
 }
 
 #[test]
@@ -212,13 +299,66 @@ fn parts_that_overlap_a_little_do_not_stop_what_slides() {
 fn what_is_pressed_in_over_a_seam_comes_out_where_it_is() {
     for (name, ground) in decomposed() {
         for half in [[0.3, 0.02, 0.3], [0.5, 0.03, 0.03], [0.1, 0.1, 0.1]].map(Vector::from) {
-            for i in -3i8..=3 {
+            let cylinder = SharedShape::cylinder(half.y, half.x);
+            for (i, mover) in
+                (-3i8..=3).flat_map(|i| [(i, cuboid_hull(half)), (i, cylinder.clone())])
+            {
                 let x = 2.5 + half.x * Real::from(i) * 0.32;
                 let start = Vector::new(x, 0.45 + half.y, 0.013);
-                let pressed = ride(&ground, &cuboid_hull(half), (start, 0.0, 0.0), 0.5, 60);
-                let what = format!("{half} at {x} on {name}");
+                let pressed = ride(&ground, &mover, (start, 0.0, 0.0), 0.5, 60);
+                let what = format!("{:?} of {half} at {x} on {name}", mover.shape_type());
                 assert!((pressed.hop - 0.05).abs() < 0.01, "{what}: {}", pressed.hop);
                 assert!(pressed.moved < 0.01, "{what}: {}", pressed.moved);
+            }
+        }
+    }
+}
+
+/// A ring about y, taken apart into wedges.
+fn ring(wedges: usize, [inner, outer]: [Real; 2], half_height: Real) -> SharedShape {
+    let wedge = |i: usize| {
+        let corner = |i: usize| {
+            let (sin, cos) = (TAU * i as Real / wedges as Real).sin_cos();
+            let at = move |r: Real, y: Real| Vector::new(r * cos, y, r * sin);
+            [inner, outer].map(|r| [at(r, -half_height), at(r, half_height)])
+        };
+        let corners: Vec<Vector> = [i, i + 1].into_iter().flat_map(corner).flatten().collect();
+        let wedge = SharedShape::convex_hull(&corners).expect("a wedge");
+        (Pose::IDENTITY, wedge)
+    };
+    let parts = (0..wedges).map(wedge).collect();
+    let flags = CompoundFlags::FIX_INTERNAL_EDGES;
+    SharedShape::new(Compound::with_flags(parts, flags, None))
+}
+
+/// The way from a rod out of a wedge that is the least may lead through the wedge.
+#[test]
+fn beads_stay_on_a_rod() {
+    for wedges in [8, 16] {
+        let bead = ring(wedges, [0.04, 0.08], 0.02);
+        let mut world = PhysicsWorld {
+            narrow_phase: ours(),
+            ..PhysicsWorld::default()
+        };
+        let tilt = Vector::Z * 1.2;
+        let axis = Rotation::from_scaled_axis(tilt) * Vector::Y;
+        let rod = ColliderBuilder::cylinder(1.0, 0.03).rotation(tilt);
+        world.insert_collider(rod.friction(0.2), None);
+        let mut bodies = Vec::new();
+        for i in 0..4 {
+            let place = axis * (0.8 - 0.12 * i as Real);
+            let body = RigidBodyBuilder::dynamic().translation(place);
+            let body = body.rotation(tilt + Vector::new(0.02, 0.0, 0.03 * i as Real));
+            let collider = ColliderBuilder::new(bead.clone()).friction(0.2);
+            bodies.push(world.insert(body, collider).0);
+        }
+        for step in 0..60 {
+            world.step();
+            for body in &bodies {
+                let place = world.bodies[*body].translation();
+                let aside = place.reject_from_normalized(axis).length();
+                let is_beside = place.dot(axis) > -0.95;
+                assert!(!is_beside || aside < 0.03, "{wedges}, {step}: {aside}");
             }
         }
     }
@@ -232,6 +372,8 @@ fn slide_over(row: &SharedShape) {
         hull(Vector::new(0.15, 0.025, 0.1)),
         (SharedShape::ball(0.1), Vector::splat(0.1)),
         (SharedShape::capsule_x(0.1, 0.1), Vector::splat(0.1)),
+        (SharedShape::cylinder(0.1, 0.15), Vector::splat(0.1)),
+        (SharedShape::cone(0.1, 0.15), Vector::splat(0.1)),
     ] {
         for i in 0..20 {
             let x = 0.2 + 0.0137 * i as Real;

@@ -4,6 +4,8 @@
 //! move the manifolds of a height field through a hash table in each frame. We compute normals only if there
 //! is a contact to correct, and manifolds stay where they are.
 
+use std::cell::Cell;
+
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Pose;
 use parry3d::query::PersistentQueryDispatcher;
@@ -12,8 +14,7 @@ use parry3d::shape::{
 };
 
 use crate::parry::composite::sub_manifolds::{SubManifolds, SubShape};
-use crate::parry::constraints::Constraints;
-use crate::parry::operand::Operand;
+use crate::parry::constraints::{Constraints, TriangleSeams};
 use crate::parry::order::PairOrder;
 
 /// A shape made of triangles.
@@ -72,19 +73,29 @@ pub(crate) fn triangles_and_hull<M, C, F>(
     let hull = SubShape::whole(hull);
     let near = sub_manifolds.reach(&hull, pos12, order);
     let is_flagged = triangles.is_flagged();
-    triangles.each_near(&near, |id, triangle| {
-        let normals = || triangles.normals(id);
-        let part = SubShape {
-            id,
-            operand: Operand::new(triangle),
-            pos: None,
-            constraints: if is_flagged {
-                Constraints::OfTriangle(&normals)
-            } else {
-                Constraints::None
-            },
-        };
-        sub_manifolds.update_part(pos12, &part, &hull, order);
-    });
+    let is_left = Cell::new(false);
+    let update = |sub_manifolds: &mut SubManifolds<'_, M, C, F>, is_beyond_border| {
+        triangles.each_near(&near, |id, triangle| {
+            let normals = || triangles.normals(id);
+            let seams = TriangleSeams {
+                normals: &normals,
+                is_left: &is_left,
+                is_beyond_border,
+            };
+            let seams = is_flagged.then_some(seams);
+            let constraints = seams.map_or(Constraints::None, Constraints::OfTriangle);
+            let part = SubShape {
+                id,
+                constraints,
+                ..SubShape::whole(triangle)
+            };
+            sub_manifolds.update_part(pos12, &part, &hull, order);
+        });
+    };
+    update(&mut sub_manifolds, false);
+    if is_left.get() && !sub_manifolds.have_contacts() {
+        sub_manifolds.start_over();
+        update(&mut sub_manifolds, true);
+    }
     sub_manifolds.finish();
 }

@@ -196,6 +196,19 @@ where
         key(manifold.subshape1, manifold.subshape2)
     }
 
+    /// Whether any parts that were updated have contacts.
+    pub fn have_contacts(&self) -> bool {
+        let mut done = self.manifolds.iter().take(self.done);
+        done.any(|manifold| !manifold.points.is_empty())
+    }
+
+    /// Forgets that any parts were updated.
+    pub fn start_over(&mut self) {
+        self.done = 0;
+        self.searched = 0;
+        self.places = None;
+    }
+
     /// Drops the manifolds of parts that no longer meet.
     pub fn finish(self) {
         debug_assert!(self.done <= self.manifolds.len());

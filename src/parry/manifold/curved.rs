@@ -10,7 +10,7 @@ use super::still::Still;
 use super::update::UpdateManifold;
 use crate::curved::{self, CurvedAnswer, CurvedQuery, Hint, Patch, SurfacePieces};
 use crate::manifold::Contacts;
-use crate::parry::constraints::{ConstrainedPair, Constraints};
+use crate::parry::constraints::{ConstrainedPair, Constraints, Corrected};
 use crate::parry::pair::{Pair, valid_pose};
 use crate::parry::still_cache::StillPair;
 use crate::parry::workspace::Workspace;
@@ -159,86 +159,137 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
             return true;
         }
         let patch = &mut workspace.curved.patch;
+        let normals = Normals::of(&self.proximity(), self.cso.pose);
         if let [Constraints::None, Constraints::None] = constraints.0 {
-            return self.update(manifold, patch);
+            let is_kept = self.keep(manifold, &normals);
+            if !is_kept {
+                manifold.set_contacts(normals.rounded, &self.along_normal(patch));
+            }
+            return is_kept;
         }
-        self.update_constrained(constraints, manifold, patch);
-        false
+        self.update_constrained(constraints, manifold, &normals, patch)
     }
 
-    /// Keeps the contacts where they are, or chooses new ones. Returns whether they stayed.
-    fn update(&self, manifold: &mut KernelManifold<'_, '_>, patch: &mut Patch) -> bool {
-        let near = self.proximity();
-        let normals = Normals::of(&near, self.cso.pose);
+    /// Keeps the contacts where they are, if they are still in place.
+    fn keep(&self, manifold: &mut KernelManifold<'_, '_>, normals: &Normals) -> bool {
         let radius = self.cso.min_radius();
-        let is_kept = !manifold.has_rolled(self.cso, normals.exact)
-            && (manifold.keep_places(self.last, self.least, &normals, radius)).is_some();
-        if !is_kept {
-            patch.complete_beside_deepest(self.cso, self.border_radii);
-            manifold.set_contacts(normals.rounded, &self.contacts(patch));
-        }
-        is_kept
+        !manifold.has_rolled(self.cso, normals.exact)
+            && (manifold.keep_places(self.last, self.least, normals, radius)).is_some()
+    }
+
+    /// The contacts along the normal of the query, whose patch is begun.
+    fn along_normal(&self, patch: &mut Patch) -> Contacts {
+        patch.complete_beside_deepest(self.cso, self.border_radii);
+        self.contacts(patch)
     }
 
     fn contacts(&self, patch: &Patch) -> Contacts {
-        let deepest = (self.on_1, self.least);
+        self.contacts_at(patch, (self.on_1, self.least))
+    }
+
+    fn contacts_at(&self, patch: &Patch, deepest: (DVec3, f64)) -> Contacts {
         let scale = self.cso.min_radius();
         curved::contacts(patch, self.cso.pose, deepest, self.max_distance, scale)
     }
 
-    /// Like [`update`](Self::update), along normals that the constraints correct.
+    /// Keeps the contacts where they are, or chooses new ones along normals that the constraints correct. Returns
+    /// whether they stayed.
     fn update_constrained(
         &self,
         (constraints, pos12): (&[Constraints<'_>; 2], &Pose),
         manifold: &mut KernelManifold<'_, '_>,
+        normals: &Normals,
         patch: &mut Patch,
-    ) {
-        let normals = Normals::of(&self.proximity(), self.cso.pose);
-        let order = manifold.order;
+    ) -> bool {
         let pair = ConstrainedPair {
             cso: self.cso,
-            order,
+            order: manifold.order,
             constraints: *constraints,
             pos12,
             max_distance: self.max_distance + self.border_radii[0] + self.border_radii[1],
         };
-        let Some(found) = pair.correct(order.to_caller(normals.rounded)) else {
-            self.set_axis(manifold);
-            return;
-        };
-        let corrected = order.to_kernel(found.normals);
-        if corrected[0].abs_diff_eq(normals.rounded[0], UNCORRECTED) {
-            self.update(manifold, patch);
-        } else if let Some(contacts) = self.along(corrected, patch) {
-            manifold.set_contacts(corrected, &contacts);
-        } else if self.least < 0.0 {
-            // Overlapping shapes must be pushed apart, even if not along the corrected normal.
-            patch.find(self.cso, self.normal, self.border_radii);
-            manifold.set_contacts(normals.rounded, &self.contacts(patch));
-        } else {
-            self.set_axis(manifold);
+        let corrected = pair.correct(pair.order.to_caller(normals.rounded));
+        let is_as_it_was = corrected.as_ref().is_some_and(|corrected| {
+            let [normal, _] = pair.order.to_kernel(corrected.normals);
+            normal.abs_diff_eq(normals.rounded[0], UNCORRECTED)
+        });
+        if is_as_it_was && self.keep(manifold, normals) {
+            return true;
         }
+        let chosen = if is_as_it_was {
+            Some((normals.rounded, self.along_normal(patch)))
+        } else {
+            corrected.and_then(|corrected| self.along_corrected(&pair, normals, &corrected, patch))
+        };
+        let along = |out: &Corrected| self.along(&pair, out, patch);
+        match chosen.and_then(|chosen| pair.uncovered(chosen, along)) {
+            Some((normals, contacts)) => manifold.set_contacts(normals, &contacts),
+            // There is no contact, but the next query has a place to start from.
+            None => manifold.set_axis(self.normal, [VertexId::default(); 2]),
+        }
+        false
     }
 
-    /// Leaves no contact, but a place for the next query to start from.
-    fn set_axis(&self, manifold: &mut KernelManifold<'_, '_>) {
-        manifold.set_axis(self.normal, [VertexId::default(); 2]);
+    /// The contacts along a corrected normal, or along that of the query. There is none if no place along the
+    /// corrected one is within reach: what rolls over a triangle is deepest over another.
+    fn along_corrected(
+        &self,
+        pair: &ConstrainedPair<'_, '_, A, B>,
+        normals: &Normals,
+        corrected: &Corrected,
+        patch: &mut Patch,
+    ) -> Option<([Vec3; 2], Contacts)> {
+        let is_absurd = self.find_along(pair, corrected, patch);
+        let found = self.within_reach(pair, corrected, patch);
+        if found.is_some() || self.least >= 0.0 || !(is_absurd || pair.is_beyond_border()) {
+            return found;
+        }
+        // Overlapping shapes must be pushed apart, even if not along the corrected normal.
+        patch.find(self.cso, self.normal, self.border_radii);
+        Some((normals.rounded, self.contacts(patch)))
     }
 
-    /// The contacts along a corrected normal, whose depth is not the one that the query found.
-    fn along(&self, corrected: [Vec3; 2], patch: &mut Patch) -> Option<Contacts> {
-        let normal = corrected[0].as_dvec3().normalize();
+    fn along(
+        &self,
+        pair: &ConstrainedPair<'_, '_, A, B>,
+        corrected: &Corrected,
+        patch: &mut Patch,
+    ) -> Option<([Vec3; 2], Contacts)> {
+        self.find_along(pair, corrected, patch);
+        self.within_reach(pair, corrected, patch)
+    }
+
+    /// Finds the places along a corrected normal, up to the depth that is possible. Whether all of them are
+    /// deeper than the query's depth makes believable.
+    fn find_along(
+        &self,
+        pair: &ConstrainedPair<'_, '_, A, B>,
+        corrected: &Corrected,
+        patch: &mut Patch,
+    ) -> bool {
+        let [normal, _] = pair.order.to_kernel(corrected.normals);
+        let normal = normal.as_dvec3().normalize();
         patch.find(self.cso, normal, self.border_radii);
-        let scale = self.cso.min_radius();
-        let least = ABSURD_DEPTH * self.least.min(0.0) - DEPTH_GAP * scale;
-        patch.retain(least..=self.max_distance);
+        patch.leave_out_corners_beside_lines();
+        let borders = self.border_radii[0] + self.border_radii[1];
+        let least = corrected.least.map(|least| least - borders);
+        let least = least.unwrap_or(ABSURD_DEPTH * self.least.min(0.0));
+        let least = least - DEPTH_GAP * self.cso.min_radius();
+        let is_found = patch.deepest_point().is_some();
+        patch.retain(least..=f64::INFINITY);
+        is_found && patch.deepest_point().is_none()
+    }
+
+    /// The contacts at the places of a patch, if any is within reach.
+    fn within_reach(
+        &self,
+        pair: &ConstrainedPair<'_, '_, A, B>,
+        corrected: &Corrected,
+        patch: &mut Patch,
+    ) -> Option<([Vec3; 2], Contacts)> {
+        patch.retain(f64::NEG_INFINITY..=self.max_distance);
         let deepest = patch.deepest_point()?;
-        Some(curved::contacts(
-            patch,
-            self.cso.pose,
-            deepest,
-            self.max_distance,
-            scale,
-        ))
+        let normals = pair.order.to_kernel(corrected.normals);
+        Some((normals, self.contacts_at(patch, deepest)))
     }
 }

@@ -87,7 +87,8 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
         } else {
             corrected.and_then(|corrected| self.along_corrected(&pair, near, normals, &corrected))
         };
-        let contacts = contacts.and_then(|contacts| self.uncovered(&pair, near, contacts));
+        let along = |out: &Corrected| self.along(&pair, near, out);
+        let contacts = contacts.and_then(|contacts| pair.uncovered(contacts, along));
         match contacts {
             Some((normals, contacts)) => write_corrected(cso, manifold, near, normals, contacts),
             // There is no contact, but the next query has a place to start from.
@@ -108,9 +109,17 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
         normals: &Normals,
         corrected: &Corrected,
     ) -> Option<([Vec3; 2], Contacts)> {
-        self.along(pair, near, corrected)
-            // Overlapping shapes must be pushed apart, even if not along the corrected normal.
-            .or_else(|| (near.signed_distance < 0.0).then(|| self.along_normal(near, normals)))
+        let found = self.along(pair, near, corrected);
+        let is_edge_on = found.is_none();
+        let found = found.filter(|(_, contacts)| contacts.len > 0);
+        if found.is_some()
+            || near.signed_distance >= 0.0
+            || !(is_edge_on || pair.is_beyond_border())
+        {
+            return found;
+        }
+        // Overlapping shapes must be pushed apart, even if not along the corrected normal.
+        Some(self.along_normal(near, normals))
     }
 
     fn along(
@@ -126,24 +135,6 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
         let range = [corrected.least.unwrap_or_else(absurd), self.max_distance];
         let contacts = manifold::contacts_along(self.cso, near, normal, range, self.scratch)?;
         Some((normals, contacts))
-    }
-
-    /// The contacts, or other ones if another part covers the face that they are all on.
-    fn uncovered(
-        &mut self,
-        pair: &ConstrainedPair<'_, '_, Hull, B>,
-        near: &Proximity,
-        mut chosen: ([Vec3; 2], Contacts),
-    ) -> Option<([Vec3; 2], Contacts)> {
-        let mut beyond = f64::INFINITY;
-        while chosen.1.len > 0
-            && let Some(side) = pair.covered_side(&chosen.1, chosen.0)
-        {
-            let out = pair.way_out(side, beyond)?;
-            beyond = out.least?;
-            chosen = self.along(pair, near, &out)?;
-        }
-        (chosen.1.len > 0).then_some(chosen)
     }
 }
 
