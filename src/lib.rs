@@ -1,9 +1,11 @@
-//! A coherent narrow phase for the convex hulls of [rapier](https://rapier.rs) worlds.
+//! A narrow phase for the convex hulls of [rapier](https://rapier.rs) worlds: it finds where they touch, starting
+//! from what each pair knew in the previous frame.
 //!
-//! [`IsaGjkDispatcher`] answers pairs with a convex hull, a cylinder or a cone, starting from the previous frame,
-//! and passes the contacts of other pairs on to parry's own dispatcher, or to one of yours. It is installed in
-//! one line. Plain `SharedShape::convex_hull` colliders need no change. A [`HullShape`] contains its prepared
-//! hull, so that no cache is searched for it, and computes its own bounding box.
+//! [`IsaGjkDispatcher`] answers pairs with a convex hull, a cylinder or a cone, and passes the others on to parry's
+//! own dispatcher, or to one of yours. It is installed in one line, and plain `SharedShape::convex_hull` colliders
+//! need no change. A [`HullShape`] is a collider shape that contains its prepared hull: nothing is prepared while the
+//! world runs, and no point is compared. [`query`] has proved distances and whole regions of contact, and
+//! [`recording`] writes down pairs whose contacts look wrong.
 //!
 //! # Quick start
 //!
@@ -44,11 +46,20 @@
 //!
 //! # Frames and units
 //!
-//! Frame 1 is that of a pair's first shape; normals point from shape 1 to shape 2. Positions are
-//! in the named shape's frame, lengths in the units of the shapes (metres in rapier). Distances
-//! are positive between separate shapes, and minus the penetration depth between overlapping
-//! ones. Input is f32. Distances, depths and their proofs are computed in f64; scans of small hulls
-//! compare in f32 first and settle near ties in f64, and contacts beside the witness are clipped in f32.
+//! Lengths are in the units of the shapes, which are metres in rapier; there are no absolute tolerances. Positions are
+//! in the frame of the shape that is named with them. *Frame 1* is that of a pair's first shape, and `pos12` is the
+//! pose of the second shape in it. Normals have unit length and point from shape 1 to shape 2. Distances are positive
+//! between separate shapes, and minus the penetration depth between overlapping ones.
+//!
+//! Input is f32. Distances, depths and their proofs are computed in f64, and are right to 1e-5 of the diameter of the
+//! larger shape's bounding sphere. Contacts beside the deepest one are clipped in f32.
+//!
+//! # Errors
+//!
+//! No step or query panics on finite input, and none returns NaN. A surface that is no convex solid is refused by
+//! [`HullShape`] with a [`HullError`]; a plain hull of that kind is left to the fallback, which is counted in
+//! [`Stats::left_to_fallback`] and logged once. Queries that do not know a shape return parry's `Unsupported`, those of
+//! [`query`] a [`QueryError`](query::QueryError).
 //!
 //! # Without a physics engine
 //!
@@ -69,6 +80,23 @@
 //! assert!(bounds.lower <= 0.5 && 0.5 <= bounds.upper && bounds.upper - bounds.lower < 1e-5);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! # Features
+//!
+//! None is on by default.
+//!
+//! | Feature | What it adds |
+//! |---|---|
+//! | `rapier` | narrow phases that are compiled with this crate, for programs that are not optimised |
+//! | `bevy`, `bevy_app` | rapier worlds in Bevy's entities; the same as a plugin |
+//! | `serde-serialize`, `parallel`, `enhanced-determinism`, `simd8`, `profiler` | rapier's features of these names; `simd8` and `enhanced-determinism` exclude each other |
+//!
+//! # Sources
+//!
+//! A pair's last separating axis is tried first, as in van den Bergen's incremental separating-axis GJK, which gave
+//! the crate its name. Distances come from GJK (Gilbert, Johnson and Keerthi) with signed volumes (Montanari, Petrinic
+//! and Barbieri), depths from EPA (van den Bergen). `docs/theory.md` in the repository proves what is new: how the
+//! features of the previous frame certify an answer.
 #![deny(unsafe_code)]
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -107,7 +135,14 @@ pub use parry::hull_shape::{HullShape, PreparedShapes};
 pub use parry::recording;
 pub use stats::{Left, Stage, Stats};
 
-/// Everything that a user of a physics world needs.
+/// What most programs need, to be imported at once.
+///
+/// ```
+/// use isa_gjk::prelude::*;
+///
+/// let dispatcher = IsaGjkDispatcher::default();
+/// assert_eq!(dispatcher.stats(), Stats::default());
+/// ```
 pub mod prelude {
     pub use crate::{
         Hull, HullError, HullShape, IsaGjkDispatcher, Left, PreparedShapes, Stage, Stats,

@@ -1,15 +1,15 @@
-//! Narrow phases of rapier with our dispatcher, compiled with this crate.
+//! Rapier's narrow phase with our dispatcher, compiled with this crate (feature `rapier`).
 //!
-//! Rapier's `NarrowPhase::with_query_dispatcher` is generic over the dispatcher. So the program that calls it compiles
-//! what leads to the update of contacts, optimised as the program itself is. That takes some seconds of its build. And
-//! where only its dependencies are optimised (`[profile.dev.package."*"] opt-level = 3`, without an `opt-level` for the
-//! program), steps take a seventh longer. The functions here do the same, and are compiled once, as a dependency.
+//! Rapier's `NarrowPhase::with_query_dispatcher` is generic over the dispatcher, so the program that calls it compiles
+//! what leads to the update of contacts, and optimises it as little as itself. The functions here do the same, but are
+//! compiled once, as part of a dependency. That saves some seconds of the program's build. And if only dependencies are
+//! optimised, as often during development (`[profile.dev.package."*"] opt-level = 3`), steps are a seventh faster.
 
 use rapier3d::geometry::NarrowPhase;
 
 use crate::IsaGjkDispatcher;
 
-/// A narrow phase that asks `dispatcher`.
+/// A new narrow phase that uses `dispatcher`, for `PhysicsWorld` or `PhysicsPipeline::step`.
 ///
 /// ```
 /// use isa_gjk::{IsaGjkDispatcher, rapier};
@@ -25,7 +25,8 @@ pub fn narrow_phase(dispatcher: IsaGjkDispatcher) -> NarrowPhase {
     NarrowPhase::with_query_dispatcher(dispatcher)
 }
 
-/// Makes a narrow phase ask `dispatcher` from now on. It keeps its contacts.
+/// Makes a narrow phase use `dispatcher` from now on, such as that of a world that is running or was loaded. It keeps
+/// its contacts.
 ///
 /// ```
 /// use isa_gjk::{IsaGjkDispatcher, rapier};

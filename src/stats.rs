@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU8, AtomicU64, AtomicUsize, Ordering};
 
-/// The stage of the coherent query that gave a pair its answer, cheapest first.
+/// The stage of a query that gave a pair its answer, cheapest first (`docs/stages.md` in the repository).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 #[non_exhaustive]
@@ -29,11 +29,11 @@ pub enum Stage {
     CachedPolytope,
     /// GJK started from the previous frame's axis and vertices.
     WarmGjk,
-    /// Penetration depth expanded from the previous frame's features.
+    /// EPA found a depth from the previous frame's features.
     WarmEpa,
     /// GJK without a previous frame, after the stages above.
     ColdGjk,
-    /// Penetration depth without a previous frame, after the stages above.
+    /// EPA without a previous frame, after the stages above.
     ColdEpa,
 }
 
@@ -73,7 +73,7 @@ impl Stage {
     }
 }
 
-/// Why the contacts of a pair were left to the fallback dispatcher.
+/// Why the contacts of a pair were left to the fallback dispatcher: an index into [`Stats::left_to_fallback`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 #[non_exhaustive]
@@ -124,7 +124,17 @@ impl Left {
     }
 }
 
-/// The cost of all queries of one dispatcher so far.
+/// What the contact updates of a dispatcher and its clones have cost so far. Scene queries are not counted, nor pairs
+/// whose contacts rapier recycles.
+///
+/// ```
+/// use isa_gjk::{IsaGjkDispatcher, Stage};
+///
+/// let stats = IsaGjkDispatcher::default().stats();
+/// for (stage, count) in Stage::ALL.iter().zip(stats.answered) {
+///     println!("{}: {count} of {}", stage.name(), stats.queries());
+/// }
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Stats {

@@ -46,10 +46,10 @@ impl Patch {
         }
         let place = self.middle(wanted + tolerance);
         let depth = (-separation - tolerance).max(0.0);
-        let balls: f64 = (0..2).map(|side| self.ball(side, place[side])).sum();
+        let balls: f64 = (0..2).map(|shape| self.ball(shape, place[shape])).sum();
         balls >= depth
-            || (0..2).any(|side| {
-                let inset = self.disc(side, place[side]);
+            || (0..2).any(|shape| {
+                let inset = self.disc(shape, place[shape]);
                 cone_contains_ball(inset, depth, cso.center(), self.normal())
             })
     }
@@ -84,28 +84,28 @@ impl Patch {
     /// The points of the cores from which the borders reach the place.
     fn core_points(&self, place: &ContactPlace) -> [DVec3; 2] {
         let points = [place.on_1, place.on_2];
-        [0, 1].map(|side| {
-            let border = self.border(side);
-            let normal = match (&self.pieces[side], place.features[side]) {
-                (Piece::Point(_), _) | (_, Feature::Vertex(_)) => self.outward(side),
+        [0, 1].map(|shape| {
+            let border = self.border(shape);
+            let normal = match (&self.pieces[shape], place.features[shape]) {
+                (Piece::Point(_), _) | (_, Feature::Vertex(_)) => self.outward(shape),
                 (Piece::Flat(flat), _) => flat.normal,
-                (Piece::Line(line), _) => line.surface.normal_at(points[side]),
+                (Piece::Line(line), _) => line.surface.normal_at(points[shape]),
             };
-            points[side] - normal * border
+            points[shape] - normal * border
         })
     }
 
     /// The radius of a ball inside a core that touches the surface at a point of a line.
-    fn ball(&self, side: usize, at: DVec3) -> f64 {
+    fn ball(&self, shape: usize, at: DVec3) -> f64 {
         let Piece::Line(Generator {
             ends,
             surface,
             ball,
-        }) = &self.pieces[side]
+        }) = &self.pieces[shape]
         else {
             return 0.0;
         };
-        if (self.outward(side).dot(surface.axis) - surface.sine()).abs() > SAME_NORMAL {
+        if (self.outward(shape).dot(surface.axis) - surface.sine()).abs() > SAME_NORMAL {
             return 0.0;
         }
         let [low, high] = ends.map(|end| end.dot(surface.axis));
@@ -114,11 +114,11 @@ impl Patch {
     }
 
     /// The radius of a disc around a point of a flat side that is perpendicular to the normal.
-    fn disc(&self, side: usize, at: DVec3) -> f64 {
-        let Some(flat @ Flat { side: face, .. }) = self.flat(side) else {
+    fn disc(&self, shape: usize, at: DVec3) -> f64 {
+        let Some(flat @ Flat { side: face, .. }) = self.flat(shape) else {
             return 0.0;
         };
-        if face.normal.distance(self.outward(side)) > SAME_NORMAL {
+        if face.normal.distance(self.outward(shape)) > SAME_NORMAL {
             return 0.0;
         }
         flat.inset(at).unwrap_or(0.0)

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::outline::{chord, circle_crossings};
 use super::patch::Patch;
 use super::piece::{Generator, Piece};
-use super::place::by_side;
+use super::place::by_shape;
 use crate::query::Disc;
 
 /// Where two outlines cross, seen along the contact normal.
@@ -79,15 +79,15 @@ impl Patch {
         deepest.found()
     }
 
-    /// The circle of one side and the polygon of the other.
+    /// The circle of one shape and the polygon of the other.
     fn cross_polygon(
         &self,
-        side: usize,
+        shape: usize,
         (center, radius): (DVec3, f64),
         deepest: &mut DeepestCrossing,
     ) {
-        let Some(disc) = self.flat(side) else { return };
-        let corners = &self.corners[1 - side];
+        let Some(disc) = self.flat(shape) else { return };
+        let corners = &self.corners[1 - shape];
         let Some(&(mut from, _)) = corners.last() else {
             return;
         };
@@ -98,7 +98,7 @@ impl Patch {
                 if (0.0..=1.0).contains(&share) {
                     let on_rim = a.lerp(b, share);
                     let rim = disc.side.normal.cross(on_rim - center);
-                    let points = by_side(side, [on_rim, from.lerp(to, share)]);
+                    let points = by_shape(shape, [on_rim, from.lerp(to, share)]);
                     deepest.consider(points, [rim, to - from]);
                 }
             }
@@ -135,9 +135,9 @@ impl Patch {
         }
     }
 
-    /// A line of one side and the outline of the other.
-    fn cross_line(&self, side: usize, line: &Generator, deepest: &mut DeepestCrossing) {
-        let Some(flat) = self.flat(1 - side) else {
+    /// A line of one shape and the outline of the other.
+    fn cross_line(&self, shape: usize, line: &Generator, deepest: &mut DeepestCrossing) {
+        let Some(flat) = self.flat(1 - shape) else {
             return;
         };
         let [a, b] = line.ends;
@@ -150,7 +150,7 @@ impl Patch {
                 let on_line = a.lerp(b, share);
                 let on_flat = flat.project(on_line);
                 let outline = flat.direction_at(on_flat);
-                deepest.consider(by_side(side, [on_line, on_flat]), [b - a, outline]);
+                deepest.consider(by_shape(shape, [on_line, on_flat]), [b - a, outline]);
             }
         }
     }
@@ -160,9 +160,9 @@ impl Patch {
         let normal = self.normal();
         let mut heights = [0.0; 2];
         let (mut radius, mut lift) = (0.0, 0.0);
-        for (side, height) in heights.iter_mut().enumerate() {
-            *height = self.height_over(side, p)?;
-            if let Some(flat) = self.flat(side) {
+        for (shape, height) in heights.iter_mut().enumerate() {
+            *height = self.height_over(shape, p)?;
+            if let Some(flat) = self.flat(shape) {
                 let inset = flat.inset(p)?;
                 radius += inset * flat.side.normal.dot(normal).abs();
                 lift += inset * flat.side.normal.cross(normal).length();

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::outline::{chord, circle_crossings};
 use super::patch::Patch;
 use super::piece::{FlatSide, Outline, Piece, across};
-use super::place::{PiecePoint, Spot, by_side};
+use super::place::{PiecePoint, Spot, by_shape};
 use crate::tolerance::{LEVEL, ON_OUTLINE};
 use crate::tuning::SMALL_SHIFT;
 
@@ -27,12 +27,12 @@ const SECTORS: [[f64; 2]; 8] = {
 impl Patch {
     /// The direction in the plane of a flat side in which its contacts become deeper. `None` if both sides
     /// are parallel.
-    fn lean(&self, side: usize, flat: &FlatSide) -> Option<DVec3> {
-        let Piece::Flat(other) = &self.pieces[1 - side] else {
+    fn lean(&self, shape: usize, flat: &FlatSide) -> Option<DVec3> {
+        let Piece::Flat(other) = &self.pieces[1 - shape] else {
             return None;
         };
         let steepest = other.normal / other.normal.dot(self.normal());
-        let gradient = if side == 0 { -steepest } else { steepest };
+        let gradient = if shape == 0 { -steepest } else { steepest };
         let in_plane = -gradient.reject_from_normalized(flat.normal);
         (in_plane.length() > LEVEL).then(|| in_plane.normalize())
     }
@@ -42,13 +42,13 @@ impl Patch {
     /// point.
     pub(super) fn add_disc(
         &mut self,
-        side: usize,
+        shape: usize,
         flat: &FlatSide,
         (center, radius): (DVec3, f64),
         with_corners: bool,
     ) {
-        let still = across(self.reference(1 - side), flat.normal);
-        let u = self.lean(side, flat).or(still);
+        let still = across(self.reference(1 - shape), flat.normal);
+        let u = self.lean(shape, flat).or(still);
         let u = u.unwrap_or_else(|| flat.normal.any_orthonormal_vector());
         let v = flat.normal.cross(u);
         let rim = |sector: usize| {
@@ -58,23 +58,23 @@ impl Patch {
         let push_sector = |patch: &mut Self, sector: usize, is_over: bool| {
             let point = PiecePoint {
                 at: rim(sector),
-                spots: by_side(side, [Spot::Arc(sector), Spot::Inside]),
+                spots: by_shape(shape, [Spot::Arc(sector), Spot::Inside]),
             };
-            match patch.flat(1 - side) {
+            match patch.flat(1 - shape) {
                 Some(other) if is_over => {
                     let height = other.height(point.at);
-                    patch.push(point, by_side(side, [0.0, height]));
+                    patch.push(point, by_shape(shape, [0.0, height]));
                 }
-                _ => patch.push_over(side, point),
+                _ => patch.push_over(shape, point),
             }
         };
-        let is_over = self.is_whole_over(1 - side, center, radius);
+        let is_over = self.is_whole_over(1 - shape, center, radius);
         let before = self.places.len();
         for sector in [0, 2, 4, 6] {
             push_sector(self, sector, is_over);
         }
         let between = [1, 3, 5, 7];
-        let is_on = |sector: usize| self.height_over(1 - side, rim(sector)).is_some();
+        let is_on = |sector: usize| self.height_over(1 - shape, rim(sector)).is_some();
         let is_whole = is_over || self.places.len() == before + 4 && between.into_iter().all(is_on);
         if is_whole || !with_corners {
             return;
@@ -82,13 +82,13 @@ impl Patch {
         for sector in between {
             push_sector(self, sector, false);
         }
-        self.add_polygon_over_disc(1 - side, center, radius);
+        self.add_polygon_over_disc(1 - shape, center, radius);
     }
 
     /// Whether a whole disc is over a flat side. The tilts of both sides bound how much its radius grows,
     /// seen along the normal.
-    fn is_whole_over(&self, side: usize, center: DVec3, radius: f64) -> bool {
-        self.flat(side).is_some_and(|flat| {
+    fn is_whole_over(&self, shape: usize, center: DVec3, radius: f64) -> bool {
+        self.flat(shape).is_some_and(|flat| {
             let lean = flat.side.normal.dot(self.normal()).abs();
             let inset = flat.inset(center).unwrap_or(0.0);
             inset * lean * lean * (1.0 - ON_OUTLINE) > radius * (1.0 + ON_OUTLINE)
@@ -96,14 +96,14 @@ impl Patch {
     }
 
     /// The corners of a polygon over a disc, and the points where its edges cross the circle.
-    fn add_polygon_over_disc(&mut self, side: usize, center: DVec3, radius: f64) {
-        let count = self.corners[side].len();
+    fn add_polygon_over_disc(&mut self, shape: usize, center: DVec3, radius: f64) {
+        let count = self.corners[shape].len();
         for i in 0..count {
-            let (from, id) = self.corners[side][i];
-            let (to, _) = self.corners[side][(i + 1) % count];
-            let spots = by_side(side, [Spot::Corner(id), Spot::Inside]);
-            self.push_over(side, PiecePoint { at: from, spots });
-            let Some(disc) = self.flat(1 - side) else {
+            let (from, id) = self.corners[shape][i];
+            let (to, _) = self.corners[shape][(i + 1) % count];
+            let spots = by_shape(shape, [Spot::Corner(id), Spot::Inside]);
+            self.push_over(shape, PiecePoint { at: from, spots });
+            let Some(disc) = self.flat(1 - shape) else {
                 return;
             };
             let [a, b] = [from, to].map(|p| disc.project(p));
@@ -112,9 +112,9 @@ impl Patch {
             };
             for (number, share) in shares.into_iter().enumerate() {
                 if (0.0..=1.0).contains(&share) {
-                    let spots = by_side(side, [Spot::Side(id), Spot::Crossing(number)]);
+                    let spots = by_shape(shape, [Spot::Side(id), Spot::Crossing(number)]);
                     let at = from.lerp(to, share);
-                    self.push_over(side, PiecePoint { at, spots });
+                    self.push_over(shape, PiecePoint { at, spots });
                 }
             }
         }
@@ -143,12 +143,12 @@ impl Patch {
             self.add_lens(flats, circles, across / distance, distance);
         }
         // If the discs are tilted, the deepest point may be on either rim.
-        for side in 0..2 {
-            if let Some(down) = self.lean(side, flats[side]) {
-                let (center, radius) = circles[side];
+        for shape in 0..2 {
+            if let Some(down) = self.lean(shape, flats[shape]) {
+                let (center, radius) = circles[shape];
                 let at = center + down * radius;
-                let spots = by_side(side, [Spot::Arc(0), Spot::Inside]);
-                self.push_over(side, PiecePoint { at, spots });
+                let spots = by_shape(shape, [Spot::Arc(0), Spot::Inside]);
+                self.push_over(shape, PiecePoint { at, spots });
             }
         }
     }
@@ -198,11 +198,11 @@ impl Patch {
         };
         let over = second.project(at) - center;
         let excess = over.length() / radius;
-        let (at, side) = if excess > 1.0 {
+        let (at, shape) = if excess > 1.0 {
             (center + over / excess, 1)
         } else {
             (at, 0)
         };
-        self.push_over(side, PiecePoint { at, spots });
+        self.push_over(shape, PiecePoint { at, spots });
     }
 }

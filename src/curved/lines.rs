@@ -4,14 +4,14 @@ use glam::DVec3;
 
 use super::patch::Patch;
 use super::piece::Generator;
-use super::place::{PiecePoint, Spot, by_side};
+use super::place::{PiecePoint, Spot, by_shape};
 use crate::tolerance::ON_OUTLINE;
 use crate::tuning::{SHORT_LINE, SIDE_BY_SIDE_SINE};
 
 impl Patch {
     /// The ends of the part of a line that is over a flat side.
-    pub(super) fn add_line(&mut self, side: usize, line: &Generator) {
-        let Some(flat) = self.flat(1 - side) else {
+    pub(super) fn add_line(&mut self, shape: usize, line: &Generator) {
+        let Some(flat) = self.flat(1 - shape) else {
             return;
         };
         let Some(shares) = flat.clip(line.ends) else {
@@ -20,9 +20,11 @@ impl Patch {
         let [a, b] = line.ends;
         for (number, share) in shares.into_iter().enumerate() {
             let at = a.lerp(b, share);
-            let height = self.flat(1 - side).map_or(f64::NAN, |flat| flat.height(at));
-            let spots = by_side(side, [Spot::End(number), Spot::Inside]);
-            self.push(PiecePoint { at, spots }, by_side(side, [0.0, height]));
+            let height = self
+                .flat(1 - shape)
+                .map_or(f64::NAN, |flat| flat.height(at));
+            let spots = by_shape(shape, [Spot::End(number), Spot::Inside]);
+            self.push(PiecePoint { at, spots }, by_shape(shape, [0.0, height]));
         }
     }
 
@@ -117,13 +119,13 @@ impl Patch {
         along: DVec3,
         towards: f64,
     ) -> f64 {
-        let beyond = [0, 1].map(|side| {
-            let at = *place + self.normal() * heights[side];
+        let beyond = [0, 1].map(|shape| {
+            let at = *place + self.normal() * heights[shape];
             let Generator {
                 ends: [a, b],
                 surface,
                 ..
-            } = lines[side];
+            } = lines[shape];
             let farther = if along.dot(*b - *a) * towards > 0.0 {
                 b
             } else {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::patch::Patch;
 use super::piece::Piece;
-use super::place::{ContactPlace, PiecePoint, Spot, by_side};
+use super::place::{ContactPlace, PiecePoint, Spot, by_shape};
 use crate::tolerance::ON_OUTLINE;
 
 impl Patch {
@@ -12,28 +12,28 @@ impl Patch {
     pub(super) fn add_extremes(&mut self) {
         let extreme = self.extreme;
         let cores = [extreme.on_1, extreme.on_2()];
-        for (side, at) in cores.into_iter().enumerate() {
-            let spot = Spot::Extreme(extreme.ids[side]);
+        for (shape, at) in cores.into_iter().enumerate() {
+            let spot = Spot::Extreme(extreme.ids[shape]);
             let candidate = PiecePoint {
                 at,
-                spots: by_side(side, [spot, Spot::Inside]),
+                spots: by_shape(shape, [spot, Spot::Inside]),
             };
-            let mine = self.border_heights()[side];
-            if let Some(other) = self.height_over(1 - side, at) {
-                self.push(candidate, by_side(side, [mine, other]));
+            let mine = self.border_heights()[shape];
+            if let Some(other) = self.height_over(1 - shape, at) {
+                self.push(candidate, by_shape(shape, [mine, other]));
             }
         }
     }
 
     /// The distance along the normal from a point to a piece, if the point is over the piece.
-    pub(super) fn height_over(&self, side: usize, p: DVec3) -> Option<f64> {
-        match &self.pieces[side] {
+    pub(super) fn height_over(&self, shape: usize, p: DVec3) -> Option<f64> {
+        match &self.pieces[shape] {
             Piece::Flat(_) => {
-                let flat = self.flat(side)?;
+                let flat = self.flat(shape)?;
                 flat.covers(p).then(|| flat.height(p))
             }
             Piece::Line(line) => {
-                let outward = self.outward(side);
+                let outward = self.outward(shape);
                 let height = line.exit(p, outward)?;
                 let at = p + outward * height;
                 let [low, high] = line.ends.map(|end| line.surface.axis.dot(end - at));
@@ -44,7 +44,7 @@ impl Patch {
             Piece::Point(core) => {
                 let height = self.normal().dot(*core - p);
                 let aside = (*core - p - self.normal() * height).length();
-                (aside <= ON_OUTLINE * self.size()).then(|| height + self.border_heights()[side])
+                (aside <= ON_OUTLINE * self.size()).then(|| height + self.border_heights()[shape])
             }
         }
     }
@@ -62,9 +62,9 @@ impl Patch {
     }
 
     /// Adds a point of one piece, if it is over the other one.
-    pub(super) fn push_over(&mut self, side: usize, candidate: PiecePoint) {
-        if let Some(height) = self.height_over(1 - side, candidate.at) {
-            self.push(candidate, by_side(side, [0.0, height]));
+    pub(super) fn push_over(&mut self, shape: usize, candidate: PiecePoint) {
+        if let Some(height) = self.height_over(1 - shape, candidate.at) {
+            self.push(candidate, by_shape(shape, [0.0, height]));
         }
     }
 }

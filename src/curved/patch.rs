@@ -117,8 +117,8 @@ impl Patch {
     }
 
     /// A direction in the plane of a flat side that is fixed in the frame of its shape.
-    pub(super) fn reference(&self, side: usize) -> DVec3 {
-        self.references[side]
+    pub(super) fn reference(&self, shape: usize) -> DVec3 {
+        self.references[shape]
     }
 
     /// The length to which rounding errors are relative.
@@ -130,13 +130,17 @@ impl Patch {
         self.normal
     }
 
-    /// The direction of the normal that points out of the shape `side`.
-    pub(super) fn outward(&self, side: usize) -> DVec3 {
-        if side == 0 { self.normal } else { -self.normal }
+    /// The direction of the normal that points out of a shape.
+    pub(super) fn outward(&self, shape: usize) -> DVec3 {
+        if shape == 0 {
+            self.normal
+        } else {
+            -self.normal
+        }
     }
 
-    pub(super) fn border(&self, side: usize) -> f64 {
-        self.border_radii[side]
+    pub(super) fn border(&self, shape: usize) -> f64 {
+        self.border_radii[shape]
     }
 
     /// The heights of the borders above the extreme points of the cores, along the normal.
@@ -149,11 +153,11 @@ impl Patch {
         self.border_radii[0] + self.border_radii[1]
     }
 
-    pub(super) fn flat(&self, side: usize) -> Option<Flat<'_>> {
-        match &self.pieces[side] {
+    pub(super) fn flat(&self, shape: usize) -> Option<Flat<'_>> {
+        match &self.pieces[shape] {
             Piece::Flat(flat) => Some(Flat {
                 side: flat,
-                corners: &self.corners[side],
+                corners: &self.corners[shape],
                 along: self.normal,
             }),
             _ => None,

@@ -44,9 +44,9 @@ pub(super) struct PiecePoint {
     pub spots: [Spot; 2],
 }
 
-/// Puts two values in the order of the shapes. The first one belongs to the shape `side`.
-pub(super) fn by_side<T>(side: usize, [mine, other]: [T; 2]) -> [T; 2] {
-    if side == 0 {
+/// Puts two values in the order of the shapes. The first one belongs to `shape`.
+pub(super) fn by_shape<T>(shape: usize, [mine, other]: [T; 2]) -> [T; 2] {
+    if shape == 0 {
         [mine, other]
     } else {
         [other, mine]

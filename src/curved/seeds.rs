@@ -11,9 +11,9 @@ impl Patch {
     /// difference along the normal.
     pub(super) fn outline_differences(&self, differences: &mut Vec<CsoVertex>) {
         differences.clear();
-        for side in 0..2 {
-            let id = self.extreme.ids[side];
-            match &self.pieces[side] {
+        for shape in 0..2 {
+            let id = self.extreme.ids[shape];
+            match &self.pieces[shape] {
                 Piece::Flat(FlatSide {
                     normal,
                     outline: Outline::Disc { center, radius },
@@ -21,14 +21,14 @@ impl Patch {
                 }) => {
                     let (u, v) = normal.any_orthonormal_pair();
                     let rim = [u, v, -u, -v].map(|outward| *center + outward * *radius);
-                    differences.extend(rim.map(|at| self.difference(side, at, id)));
+                    differences.extend(rim.map(|at| self.difference(shape, at, id)));
                 }
                 Piece::Flat(_) => {
-                    let corners = self.corners[side].iter();
-                    differences.extend(corners.map(|(at, id)| self.difference(side, *at, *id)));
+                    let corners = self.corners[shape].iter();
+                    differences.extend(corners.map(|(at, id)| self.difference(shape, *at, *id)));
                 }
                 Piece::Line(line) => {
-                    differences.extend(line.ends.map(|at| self.difference(side, at, id)));
+                    differences.extend(line.ends.map(|at| self.difference(shape, at, id)));
                 }
                 Piece::Point(_) => {}
             }
@@ -36,9 +36,9 @@ impl Patch {
     }
 
     /// A point of one shape minus the extreme point of the other.
-    fn difference(&self, side: usize, at: DVec3, id: VertexId) -> CsoVertex {
+    fn difference(&self, shape: usize, at: DVec3, id: VertexId) -> CsoVertex {
         let extreme = &self.extreme;
-        if side == 0 {
+        if shape == 0 {
             CsoVertex {
                 w: at - extreme.on_2(),
                 on_1: at,

@@ -2,7 +2,17 @@
 
 use std::fmt;
 
-/// Why points or triangles are not a hull.
+/// Why points or triangles are not a hull. Numbers are indices into the points or triangles that were given.
+///
+/// ```
+/// use glam::Vec3;
+/// use isa_gjk::{HullError, HullShape};
+///
+/// let square = [Vec3::ZERO, Vec3::X, Vec3::Y, Vec3::X + Vec3::Y];
+/// let error = HullShape::from_points(&square).unwrap_err();
+/// assert_eq!(error, HullError::Flat);
+/// assert_eq!(error.to_string(), "the points span no volume");
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum HullError {

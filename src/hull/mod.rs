@@ -30,9 +30,8 @@ use graph::EdgeGraph;
 use scan::Scan;
 use start_table::StartTable;
 
-/// A convex polytope, with everything that a query needs precomputed.
-///
-/// Lengths are in the units of the points it was built from, positions in their frame.
+/// A convex polytope, with everything that a query needs precomputed. A [`HullShape`](crate::HullShape) makes a collider
+/// of it. Lengths are in the units of the points it was built from, positions in their frame.
 // Most pairs are proved apart by the bounding sphere, and by the pointers to points and neighbours. This
 // order and alignment puts these on one cache line.
 #[derive(Clone, Debug)]

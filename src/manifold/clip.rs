@@ -126,8 +126,8 @@ impl Clipper {
 
     /// Adds a vertex of one shape at a position in the contact plane, if that is inside the other shape's
     /// polygon.
-    pub fn add_beside(&mut self, side: usize, vertex: VertexId, [x, y]: [f32x4; 2]) {
-        let is_inside = if side == 0 {
+    pub fn add_beside(&mut self, shape: usize, vertex: VertexId, [x, y]: [f32x4; 2]) {
+        let is_inside = if shape == 0 {
             self.subject.count > 2 && self.subject.rows().iter().all(|row| row.contains(x, y))
         } else {
             let rows = self.window.rows();
@@ -135,7 +135,7 @@ impl Clipper {
         };
         if is_inside {
             let source = self.first_beside() + self.beside.len();
-            self.beside.push((side, vertex));
+            self.beside.push((shape, vertex));
             self.corners.push_masked(1, source, &[x], &[y]);
         }
     }
@@ -160,8 +160,8 @@ impl Clipper {
         } else if source < self.first_beside() {
             VertexOrigin::Window((source - crossings - width) as u16)
         } else {
-            let (side, vertex) = self.beside[source - self.first_beside()];
-            VertexOrigin::Beside(side, vertex)
+            let (shape, vertex) = self.beside[source - self.first_beside()];
+            VertexOrigin::Beside(shape, vertex)
         }
     }
 }

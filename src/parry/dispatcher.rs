@@ -19,14 +19,50 @@ use crate::parry::update::Updater;
 use crate::parry::workspace;
 use crate::stats::{SharedStats, Stats};
 
-/// A query dispatcher that answers pairs with a convex hull, a cylinder or a cone itself, and two capsules. It
-/// also finds the parts of compounds that meet, whatever they are.
+/// Finds contacts of convex hulls, cylinders and cones, and answers queries of all convex shapes. Rapier's narrow
+/// phase uses it in place of parry's dispatcher.
 ///
-/// Pass it to `NarrowPhase::with_query_dispatcher`, or to `set_query_dispatcher` of a running world. Clones
-/// share their statistics.
+/// Pass it to `NarrowPhase::with_query_dispatcher`, or to `set_query_dispatcher` of a running world, which keeps its
+/// contacts. Clones share their statistics; a clone for each of many worlds costs nothing.
 ///
-/// All other pairs go to the fallback `F`: parry's dispatcher, or another one given to
-/// [`with_fallback`](Self::with_fallback).
+/// | Query | Pairs that it answers itself, in either order |
+/// |---|---|
+/// | contact manifolds | a hull with a hull, cuboid, triangle, ball, capsule, segment or half-space; a cylinder or cone with a hull, cuboid, triangle, capsule, segment, cylinder or cone; two capsules |
+/// | `distance`, `closest_points`, `contact`, `intersection_test` | all convex shapes, but for half-spaces without a hull, and balls with shapes that are neither rounded nor hulls |
+/// | `cast_shapes`, `cast_shapes_nonlinear` | all convex shapes but half-spaces |
+///
+/// A hull is a `ConvexPolyhedron`, a `RoundConvexPolyhedron` or a [`HullShape`](crate::HullShape); cuboids, triangles,
+/// cylinders and cones may be rounded. Compounds, meshes, height fields and voxels are answered part by part. All other
+/// pairs go to the fallback `F`: parry's dispatcher, or another one given to [`with_fallback`](Self::with_fallback). Only a pair
+/// that the fallback does not know either is `Unsupported`.
+///
+/// It can be called without a world. The pair's memory is in its manifold, so pass the same one in each frame:
+///
+/// ```
+/// use isa_gjk::{HullShape, IsaGjkDispatcher};
+/// use parry3d::math::{Pose, Vector};
+/// use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
+/// use parry3d::shape::Cuboid;
+///
+/// let dispatcher = IsaGjkDispatcher::default();
+/// let table = Cuboid::new(Vector::new(2.0, 0.5, 2.0));
+/// let foot = HullShape::from_points(&[Vector::X, Vector::Z, -Vector::X - Vector::Z, Vector::Y])?;
+/// let mut manifolds: Vec<ContactManifold<(), ()>> = Vec::new();
+/// let mut workspace = None;
+/// for frame in 0..3 {
+///     // The pose of the foot in the frame of the table, in metres: it sinks in by a millimetre a frame.
+///     let pos12 = Pose::translation(0.0, 0.5 - 1e-3 * frame as f32, 0.0);
+///     let prediction = 0.02;
+///     dispatcher.contact_manifolds(
+///         &pos12, &table, &foot, prediction, &mut manifolds, &mut workspace,
+///     )?;
+/// }
+/// let contacts = &manifolds[0].points; // each with a point in either shape's frame
+/// assert_eq!(contacts.len(), 3);
+/// assert!(contacts.iter().all(|contact| (contact.dist + 2e-3).abs() < 1e-5));
+/// assert!(manifolds[0].local_n1.y > 0.999, "from the table to the foot");
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct IsaGjkDispatcher<F = DefaultQueryDispatcher> {
     pub(crate) fallback: F,

@@ -4,6 +4,15 @@ use std::error::Error;
 use std::fmt;
 
 /// Why a query has no answer.
+///
+/// ```
+/// use isa_gjk::query::{QueryError, SeparationBounds};
+/// use rapier3d::prelude::*;
+///
+/// let ball = SharedShape::ball(0.5);
+/// let bounds = SeparationBounds::between(&*ball, &*ball, &Pose::translation(3.0, 0.0, 0.0));
+/// assert_eq!(bounds.unwrap_err(), QueryError::NoHull);
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum QueryError {

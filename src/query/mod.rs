@@ -3,6 +3,9 @@
 //! [`SeparationBounds`] are a lower and an upper bound of the signed distance, with proofs of both.
 //! [`ContactPatch`] is the whole polygon over which two shapes meet. [`ContactId`] follows a contact from frame
 //! to frame.
+//!
+//! These need no world, no dispatcher and no memory. They take shapes and the pose of the second one in the frame of
+//! the first. What they return is in that frame, in f64, in the units of the shapes.
 
 mod bounds;
 mod certificate;

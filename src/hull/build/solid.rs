@@ -22,8 +22,8 @@ pub(crate) fn surface_of_points(points: &[Vec3]) -> Result<HullTriangles, HullEr
 impl Hull {
     /// The convex hull of a point cloud. It is exact: no point is left out.
     ///
-    /// Vertex ids are indices into [`points`](Self::points), not into the argument: points inside the hull or
-    /// inside its sides are dropped, equal points become one vertex, and the order changes.
+    /// Vertex ids are indices into [`points`](Self::points), not into the argument: points inside the hull, its
+    /// faces or its edges are dropped, equal points become one vertex, and the order changes.
     ///
     /// # Errors
     /// [`HullError`] says what is wrong with the points.

@@ -1,43 +1,4 @@
 //! [`HullShape`]: a convex hull for colliders that contains its prepared hull.
-//!
-//! For plain `SharedShape::convex_hull` colliders, the dispatcher looks up the prepared hull in a cache, and
-//! reads all points to verify that it is the right one. rapier also scans all points for the bounding box in
-//! every frame. A `HullShape` contains its prepared hull and finds its bounding box by six climbs. So no part
-//! of a frame takes time proportional to the number of vertices (except continuous collision detection, see
-//! below).
-//!
-//! # What works
-//! Everything that works with a plain convex hull, with our dispatcher and with rapier's own:
-//! contacts with every other shape, sensors, ray casts, point projections, shape casts, the
-//! character controller, mass properties, scaling, and being a part of a compound.
-//!
-//! - **Mass, ray casts and point projections** are those of the exact solid, in f64. A plain hull differs if
-//!   parry merges faces that are up to 1.5 degrees apart (its mass can be off by a few per cent, or more if
-//!   it is flat), for hulls of millimetres, and for rays that start inside with a direction that is not of
-//!   length one.
-//! - **A half-space** supports a face at corners far from each other, not at any four.
-//! - **Saving and loading.** parry sees the shape as the convex polyhedron that it contains
-//!   (`as_typed_shape`), and this is serialized. A loaded world has plain hulls in place of `HullShape`s and
-//!   works without this crate. With our dispatcher it continues as before, except for the rounding of
-//!   bounding boxes, and for pairs whose contacts parry computes (with custom shapes), which may differ as
-//!   described above. To get `HullShape`s back, see [`PreparedShapes`].
-//! - **Debug rendering** draws the polyhedron's edges, for the same reason.
-//! - **Continuous collision detection** sweeps the polyhedron's points, as for a plain hull, and scans all
-//!   points for each support query: this is rapier's code.
-//!
-//! # What does not
-//! - `shape_type` is `Custom`, since downcasts such as `as_convex_polyhedron` find no
-//!   polyhedron but a `HullShape`. Match on `as_typed_shape` instead.
-//! - `CompoundFlags::FIX_INTERNAL_EDGES` smooths inner edges between `HullShape` parts with our dispatcher,
-//!   which welds corners with parry's default tolerance. With rapier's dispatcher, these parts keep their own
-//!   normals, since parry cannot downcast them. [`PreparedShapes`] replaces them by plain hulls.
-//! - Only plain hulls have rounded borders: use `SharedShape::round_convex_hull`.
-//!
-//! # Memory
-//! The prepared hull takes about 130 bytes per vertex ([`Hull::heap_bytes`]). parry's polyhedron takes 250 more. It is
-//! made when it is first asked for: to save, draw or sweep the shape, or if the shape was made from a polyhedron. A
-//! plain collider always has both if our dispatcher answers its pairs, and 12 bytes per vertex more for the
-//! comparison: up to 149 vertices, or for any number if the processor has no instruction for the digest.
 
 mod bounds;
 mod features;
@@ -87,6 +48,45 @@ use crate::hull::{self, Hull, HullError};
 /// assert!(height.abs() < 0.01, "it rests on the ground");
 /// # Ok::<(), isa_gjk::HullError>(())
 /// ```
+///
+/// # Why
+/// For plain `SharedShape::convex_hull` colliders, the dispatcher looks up the prepared hull in a cache, and
+/// reads all points to verify that it is the right one. Rapier also scans all points for the bounding box in
+/// every frame. A `HullShape` contains its prepared hull and finds its bounding box by six climbs over its edges.
+/// So no part of a frame takes time proportional to the number of vertices, except continuous collision detection.
+///
+/// # What works
+/// Everything that works with a plain convex hull, with our dispatcher and with rapier's own:
+/// contacts with every other shape, sensors, ray casts, point projections, shape casts, the
+/// character controller, mass properties, scaling, and being a part of a compound.
+///
+/// - **Mass, ray casts and point projections** are those of the exact solid, in f64. A plain hull differs if
+///   parry merges faces that are up to 1.5 degrees apart (its mass can be off by a few per cent, or more if
+///   it is flat), for hulls of millimetres, and for rays that start inside with a direction that is not of
+///   length one.
+/// - **A half-space** supports a face at corners far from each other, not at any four.
+/// - **Saving and loading.** parry sees the shape as a convex polyhedron
+///   (`as_typed_shape`), and this is serialized. A loaded world has plain hulls in place of `HullShape`s and
+///   works without this crate. With our dispatcher it continues as before, except for the rounding of
+///   bounding boxes, and for pairs whose contacts parry computes (with custom shapes), which may differ as
+///   described above. To get `HullShape`s back, see [`PreparedShapes`].
+/// - **Debug rendering** draws the polyhedron's edges, for the same reason.
+/// - **Continuous collision detection** sweeps the polyhedron's points, as for a plain hull, and scans all
+///   points for each support query. Rapier asks no dispatcher about hulls.
+///
+/// # What differs
+/// - `shape_type` is `Custom`, since downcasts such as `as_convex_polyhedron` find no
+///   polyhedron but a `HullShape`. Match on `as_typed_shape` instead.
+/// - `CompoundFlags::FIX_INTERNAL_EDGES` smooths inner edges between `HullShape` parts with our dispatcher,
+///   which welds corners with parry's default tolerance. With rapier's dispatcher, these parts keep their own
+///   normals, since parry cannot downcast them. [`PreparedShapes`] replaces them by plain hulls.
+/// - Only plain hulls have rounded borders: use `SharedShape::round_convex_hull`.
+///
+/// # Memory
+/// The prepared hull takes about 130 bytes per vertex ([`Hull::heap_bytes`]). parry's polyhedron takes 250 more. It is
+/// made when it is first asked for: to save, draw or sweep the shape, or if the shape was made from a polyhedron. A
+/// plain collider always has both if our dispatcher answers its pairs, and 12 bytes per vertex more for the
+/// comparison: up to 149 vertices, or for any number if the processor has no instruction for the digest.
 #[derive(Clone, Debug)]
 pub struct HullShape {
     inner: Arc<Inner>,

@@ -28,10 +28,10 @@ impl KernelManifold<'_, '_> {
         }
         let deepest = last.deepest(n1.as_dvec3());
         let own = self.manifold.points().features(deepest)?;
-        let face = |side: usize| {
-            let others = self.manifold.features().map(|ids| ids[side]);
-            let mut ids = iter::once(own[side]).chain(others);
-            unpack(ids.find(|id| is_face(*id)).unwrap_or(own[side]))
+        let face = |shape: usize| {
+            let others = self.manifold.features().map(|ids| ids[shape]);
+            let mut ids = iter::once(own[shape]).chain(others);
+            unpack(ids.find(|id| is_face(*id)).unwrap_or(own[shape]))
         };
         let [f1, f2] = self.order.to_kernel([face(0), face(1)]);
         Some(FlushFaces {
@@ -52,7 +52,7 @@ impl KernelManifold<'_, '_> {
         let Some(old) = self.manifold.points().features(deepest) else {
             return;
         };
-        let has_face = |side: usize| old[side] == ids[side] && is_face(ids[side]);
+        let has_face = |shape: usize| old[shape] == ids[shape] && is_face(ids[shape]);
         if old != ids && !has_face(0) && !has_face(1) {
             set_features(self.manifold, deepest, ids);
         }

@@ -73,9 +73,9 @@ impl ManifoldPoints {
         border_radii: [f64; 2],
         order: PairOrder,
     ) -> Self {
-        let at_border = |(points, side): (&[f32x4; 3], usize)| {
+        let at_border = |(points, shape): (&[f32x4; 3], usize)| {
             let [x, y, z] = *points;
-            let to_border = normals[side] * border_radii[side] as Real;
+            let to_border = normals[shape] * border_radii[shape] as Real;
             [
                 (x + to_border.x).to_array(),
                 (y + to_border.y).to_array(),
@@ -83,29 +83,29 @@ impl ManifoldPoints {
             ]
         };
         let [a, b, c, d] = &contacts.features;
-        let packed = |side: usize| {
-            let packed_id = |features: &[Feature; 2]| pack(features[side]).0;
+        let packed = |shape: usize| {
+            let packed_id = |features: &[Feature; 2]| pack(features[shape]).0;
             [packed_id(a), packed_id(b), packed_id(c), packed_id(d)]
         };
         // References, since which one comes first is selected.
-        let sides = order.to_caller([(&contacts.on_1, 0), (&contacts.on_2, 1)]);
+        let of_shapes = order.to_caller([(&contacts.on_1, 0), (&contacts.on_2, 1)]);
         Self {
             count: contacts.len,
-            points: map_pair(sides, at_border),
+            points: map_pair(of_shapes, at_border),
             distances: (contacts.distance - (border_radii[0] + border_radii[1]) as Real).to_array(),
-            features: map_pair(sides, |(_, side)| packed(side)),
+            features: map_pair(of_shapes, |(_, shape)| packed(shape)),
         }
     }
 
     #[inline(always)]
-    fn point(&self, side: usize, i: usize) -> Vec3 {
-        let [x, y, z] = &self.points[side];
+    fn point(&self, shape: usize, i: usize) -> Vec3 {
+        let [x, y, z] = &self.points[shape];
         Vec3::new(x[i], y[i], z[i])
     }
 
     #[inline(always)]
     fn tracked<C>(&self, i: usize, data: C) -> TrackedContact<C> {
-        let [fid1, fid2] = map_pair([0, 1], |side| PackedFeatureId(self.features[side][i]));
+        let [fid1, fid2] = map_pair([0, 1], |shape| PackedFeatureId(self.features[shape][i]));
         TrackedContact {
             local_p1: self.point(0, i),
             local_p2: self.point(1, i),
@@ -148,9 +148,9 @@ impl FeatureKeys {
     /// A bit for each key that equals one of the others.
     #[inline(always)]
     fn same(&self, others: &Self, one: usize) -> u32 {
-        let [a, b] = map_pair([0, 1], |side| {
-            let one = u32x4::splat(others.0[side].to_array()[one]);
-            self.0[side].simd_eq(one)
+        let [a, b] = map_pair([0, 1], |shape| {
+            let one = u32x4::splat(others.0[shape].to_array()[one]);
+            self.0[shape].simd_eq(one)
         });
         (a & b).to_bitmask()
     }
@@ -159,7 +159,7 @@ impl FeatureKeys {
 impl PartialEq for FeatureKeys {
     #[inline(always)]
     fn eq(&self, other: &Self) -> bool {
-        let [a, b] = map_pair([0, 1], |side| self.0[side] ^ other.0[side]);
+        let [a, b] = map_pair([0, 1], |shape| self.0[shape] ^ other.0[shape]);
         !(a | b).any()
     }
 }
