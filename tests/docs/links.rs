@@ -98,6 +98,26 @@ fn every_picture_is_shown() {
     }
 }
 
+/// For those who cannot see it, or whose reader does not load it.
+#[test]
+fn every_picture_is_also_put_into_words() {
+    let mut silent = Vec::new();
+    let mut count = 0;
+    for (document, text) in documents() {
+        for (number, line) in lines(&text) {
+            for picture in line.split("![").skip(1) {
+                count += 1;
+                let words = picture.split(']').next().unwrap_or_default();
+                if words.split(' ').count() < 4 {
+                    silent.push(format!("{document}:{number}: {words}"));
+                }
+            }
+        }
+    }
+    assert!(count > 15, "only {count} pictures were found");
+    assert!(silent.is_empty(), "say too little:\n{}", silent.join("\n"));
+}
+
 /// Outside of rustdoc nothing hides the lines that begin with `# `: they would be copied, and not compile.
 #[test]
 fn snippets_have_no_hidden_lines() {

@@ -3,6 +3,10 @@
 
 mod picture;
 mod recorded;
+mod rule;
+mod rules;
+mod seam;
+mod shape_faces;
 mod svg;
 
 use std::error::Error;
@@ -78,6 +82,10 @@ struct Options {
     #[arg(long, requires = "pair")]
     test: bool,
 
+    /// Draw the rules by which contacts are chosen, into this folder
+    #[arg(long, conflicts_with = "pair")]
+    rules: Option<PathBuf>,
+
     /// Where to write the picture
     #[arg(long, default_value = "inspect.svg")]
     out: PathBuf,
@@ -102,6 +110,9 @@ fn main() -> ExitCode {
 }
 
 fn draw(options: &Options) -> Result<(), Box<dyn Error>> {
+    if let Some(folder) = &options.rules {
+        return rules::draw(folder);
+    }
     if let Some(path) = &options.pair {
         let recorded = Recorded::open(path, options.number)?;
         if options.test {

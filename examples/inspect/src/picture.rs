@@ -9,7 +9,7 @@ use isa_gjk::internals::support::{FaceId, Polytope, Support, VertexId};
 use isa_gjk::query::Feature;
 use isa_gjk::{Hull, Stage};
 
-use crate::svg::{Canvas, Style, YAW};
+use crate::svg::{Canvas, PITCH, Page, Style, View, YAW};
 
 /// Half the side of the squares that stand for planes, in radii.
 const PLANE: f64 = 0.5;
@@ -80,13 +80,14 @@ impl Snapshot<'_> {
             let vertices = self.hulls[i].vertex_ids();
             vertices.map(move |vertex| self.vertex(i, vertex))
         });
-        let mut canvas = Canvas::new(
-            self.axis(),
-            YAW,
-            points.into_iter().flatten(),
-            self.middle(),
+        let view = View {
+            axis: self.axis(),
+            yaw: YAW,
+            pitch: PITCH,
+            focus: self.middle(),
             zoom,
-        );
+        };
+        let mut canvas = Canvas::new(Page::WITH_TEXT, view, points.into_iter().flatten());
         for front in [false, true] {
             (0..2).for_each(|i| self.draw_hull(&mut canvas, i, front));
         }

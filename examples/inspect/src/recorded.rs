@@ -4,19 +4,16 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-use glam::{DVec3, Vec3};
-use isa_gjk::internals::support::Polytope;
+use glam::DVec3;
+use isa_gjk::IsaGjkDispatcher;
 use isa_gjk::query::{Certificate, ContactPatch, QueryError, SeparationBounds};
 use isa_gjk::recording::{self, RecordedPair};
-use isa_gjk::{Hull, IsaGjkDispatcher};
 use parry3d::query::ContactManifold;
 use parry3d::shape::{Shape, TypedShape};
 
 use crate::picture::{ANSWER, HULLS, PATCH, REMEMBERED};
-use crate::svg::{Canvas, Style};
-
-/// Sides of what is round.
-const ROUND: u32 = 24;
+use crate::shape_faces;
+use crate::svg::{Canvas, PITCH, Page, Style, View};
 
 /// A pair of a recording, beside what is known of it now.
 pub struct Recorded {
@@ -111,7 +108,14 @@ impl Recorded {
         let size = self.size();
         let faces = [0, 1].map(|i| self.faces(i, size));
         let points = faces.iter().flatten().flatten().copied();
-        let mut canvas = Canvas::new(self.normal(), yaw, points, self.focus(), zoom);
+        let view = View {
+            axis: self.normal(),
+            yaw,
+            pitch: PITCH,
+            focus: self.focus(),
+            zoom,
+        };
+        let mut canvas = Canvas::new(Page::WITH_TEXT, view, points);
         for is_front in [false, true] {
             for (i, faces) in faces.iter().enumerate() {
                 let style = Style {
@@ -119,7 +123,9 @@ impl Recorded {
                     width: if is_front { 1.0 } else { 0.4 },
                     ..Style::new(HULLS[i])
                 };
-                let is_drawn = |face: &&Vec<DVec3>| canvas.faces_viewer(outward(face)) == is_front;
+                let is_drawn = |face: &&Vec<DVec3>| {
+                    canvas.faces_viewer(shape_faces::outward(face)) == is_front
+                };
                 let drawn: Vec<_> = faces.iter().filter(is_drawn).collect();
                 drawn.iter().for_each(|face| canvas.polygon(face, style));
             }
@@ -248,46 +254,10 @@ impl Recorded {
                         .to_vec(),
                 ]
             }
-            None => faces(&corners(shape)),
+            None => shape_faces::faces(shape),
         };
         let placed = |face: Vec<DVec3>| face.into_iter().map(place).collect();
         faces.into_iter().map(placed).collect()
-    }
-}
-
-/// The polygons around points: those of their hull, or the points themselves if they are flat.
-fn faces(corners: &[Vec3]) -> Vec<Vec<DVec3>> {
-    let Ok(hull) = Hull::from_points(corners) else {
-        return vec![corners.iter().map(|p| p.as_dvec3()).collect()];
-    };
-    let face = |face| hull.face_points(face).collect();
-    hull.face_ids().map(face).collect()
-}
-
-fn outward(face: &[DVec3]) -> DVec3 {
-    let [a, b, c, ..] = face else {
-        return DVec3::ZERO;
-    };
-    (*b - a).cross(*c - a)
-}
-
-/// The corners of a shape without its border; of a round one as many as make it look round.
-fn corners(shape: &dyn Shape) -> Vec<Vec3> {
-    match shape.as_typed_shape() {
-        TypedShape::ConvexPolyhedron(hull) => hull.points().to_vec(),
-        TypedShape::RoundConvexPolyhedron(round) => round.inner_shape.points().to_vec(),
-        TypedShape::Cuboid(cuboid) => cuboid.to_trimesh().0,
-        TypedShape::RoundCuboid(round) => round.inner_shape.to_trimesh().0,
-        TypedShape::Ball(ball) => ball.to_trimesh(ROUND, ROUND / 2).0,
-        TypedShape::Capsule(capsule) => capsule.to_trimesh(ROUND, ROUND / 2).0,
-        TypedShape::Cylinder(cylinder) => cylinder.to_trimesh(ROUND).0,
-        TypedShape::RoundCylinder(round) => round.inner_shape.to_trimesh(ROUND).0,
-        TypedShape::Cone(cone) => cone.to_trimesh(ROUND).0,
-        TypedShape::RoundCone(round) => round.inner_shape.to_trimesh(ROUND).0,
-        TypedShape::Triangle(triangle) => triangle.vertices().to_vec(),
-        TypedShape::RoundTriangle(round) => round.inner_shape.vertices().to_vec(),
-        TypedShape::Segment(segment) => vec![segment.a, segment.b],
-        _ => Vec::new(),
     }
 }
 
