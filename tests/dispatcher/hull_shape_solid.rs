@@ -5,7 +5,7 @@ use glam::{DMat3, DVec3};
 use isa_gjk::HullShape;
 use isa_gjk::internals::support::Polytope;
 use parry3d::math::{Real, Vector};
-use parry3d::query::{Ray, RayIntersection};
+use parry3d::query::{PointQuery, Ray, RayCast, RayIntersection};
 use parry3d::shape::{FeatureId, PolygonalFeature, SharedShape};
 use testkit::cases::hulls;
 use testkit::generate::{Rng, prepared};
@@ -322,4 +322,36 @@ fn scaling_scales_the_hull() {
             "{name}"
         );
     });
+}
+
+/// Corners a millionth apart leave slivers, and faces that one plane does not hold.
+#[test]
+fn rays_hit_hulls_of_near_points() {
+    let mut rng = Rng::new(7);
+    let mut hits = 0;
+    for _ in 0..400 {
+        let centers = [(); 5].map(|()| rng.direction() * rng.range(0.2, 0.6));
+        let around =
+            |center: &DVec3| [*center; 3].map(|c| c + rng.direction() * rng.range(0.0, 2e-6));
+        let points: Vec<Vector> = centers
+            .iter()
+            .flat_map(around)
+            .map(|p| p.as_vec3())
+            .collect();
+        let hull = HullShape::from_points(&points).expect("a solid");
+        for _ in 0..20 {
+            let target =
+                centers.iter().sum::<DVec3>() / 5.0 + rng.direction() * rng.range(0.0, 0.3);
+            let origin = (rng.direction() * 2.0).as_vec3();
+            let ray = Ray::new(origin, target.as_vec3() - origin);
+            let Some(hit) = hull.cast_local_ray_and_get_normal(&ray, Real::MAX, true) else {
+                continue;
+            };
+            hits += 1;
+            let place = ray.point_at(hit.time_of_impact);
+            let off = hull.project_local_point(place, false).point.distance(place);
+            assert!(off < 1e-5, "{off} off at {place}: {points:?}");
+        }
+    }
+    assert!(hits > 2_000, "only {hits} hits");
 }

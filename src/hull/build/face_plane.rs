@@ -27,6 +27,12 @@ impl FacePlane {
         is_overtopped: false,
     };
 
+    /// Whether it is a plane.
+    #[inline]
+    pub fn is_some(&self) -> bool {
+        self.offset < f64::INFINITY
+    }
+
     /// The plane of a triangle through its outermost corner: that of a face whose corners are steep.
     #[inline]
     pub fn of_triangle(triangle: &AreaVector, radius: f64) -> Self {

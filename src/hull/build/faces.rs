@@ -115,13 +115,14 @@ impl Builder<'_> {
                 continue;
             }
             let triangles = regions.triangles(region);
-            let is_one_face = triangles.len() > 1
+            let is_polygon = triangles.len() > 1
                 && regions.boundary(self.mesh, triangles, &mut polygon)
                 && is_convex(self.points, self.mesh, &polygon, self.radius);
-            if is_one_face {
-                self.add_polygon(&polygon, triangles);
+            let plane = is_polygon.then(|| self.plane(&polygon));
+            if let Some(plane) = plane.filter(FacePlane::is_some) {
+                self.add_polygon(&polygon, &plane, triangles);
             } else {
-                // A region that is not a convex polygon becomes one face per triangle.
+                // A region that is not a flat, convex polygon becomes one face per triangle.
                 triangles
                     .iter()
                     .for_each(|&t| self.add_triangle(t as usize));
@@ -157,9 +158,8 @@ impl Builder<'_> {
     }
 
     /// Adds a polygon that consists of some triangles.
-    fn add_polygon(&mut self, polygon: &[HalfEdge], triangles: &[u32]) {
-        let plane = self.plane(polygon);
-        let face = self.add_plane(&plane);
+    fn add_polygon(&mut self, polygon: &[HalfEdge], plane: &FacePlane, triangles: &[u32]) {
+        let face = self.add_plane(plane);
         for &t in triangles {
             *self.merged.face_of.at_mut(t) = face;
         }
@@ -179,7 +179,7 @@ impl Builder<'_> {
         if plane.is_overtopped {
             self.merged.overtopped.push(face);
         }
-        self.has_planes &= plane.offset < f64::INFINITY;
+        self.has_planes &= plane.is_some();
         self.polygons.push(FaceRecord {
             normal: plane.normal,
             first: self.corners.short_len(),
