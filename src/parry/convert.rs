@@ -11,11 +11,19 @@ use parry3d::shape::{
 
 use crate::pose::unit_scale;
 use crate::primitive::{Ball, Cone, CuboidPolytope, Cylinder, Segment, TrianglePolytope};
+use crate::support::{ShapeId, ShapeKind};
 use crate::tolerance::{MIN_BOX_THICKNESS, MIN_EXTENT};
 
 /// The half-space beneath the plane through its origin with this normal.
 pub(crate) struct HalfSpace {
     pub normal: DVec3,
+}
+
+impl HalfSpace {
+    #[inline]
+    pub fn id(&self) -> ShapeId {
+        ShapeId::described_by(ShapeKind::HalfSpace, self.normal.to_array())
+    }
 }
 
 pub(crate) fn half_space(half_space: &ParryHalfSpace) -> Option<HalfSpace> {

@@ -9,7 +9,7 @@ use crate::parry::still_cache::StillPair;
 use crate::pose::RelativePose;
 use crate::query::{Feature, Proximity};
 use crate::stats::Cost;
-use crate::support::{FaceId, ShapeId, ShapeKind, Support, VertexId};
+use crate::support::{FaceId, Support, VertexId};
 
 /// The boundary of a half-space, in the frame of a hull.
 pub(crate) struct Plane {
@@ -78,13 +78,9 @@ pub(crate) fn still_pair(
     rotation: Quat,
     key: u64,
 ) -> Option<StillPair> {
-    let normal = pair.other.normal.to_array();
     Some(StillPair {
         key,
-        shapes: [
-            pair.hull.id()?,
-            ShapeId::described_by(ShapeKind::HalfSpace, normal),
-        ],
+        shapes: [pair.hull.id()?, pair.other.id()],
         rotation,
         place: pose.point_to_2(pair.hull.center()),
         radius: pair.hull.radius(),

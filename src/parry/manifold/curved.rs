@@ -155,7 +155,7 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
             }
             manifold.manifold.hold(still);
             let core_distance = self.least + self.border_radii[0] + self.border_radii[1];
-            still.store(&mut workspace.still_cache, core_distance, last);
+            still.store(&mut workspace.still_cache, core_distance);
             return true;
         }
         let patch = &mut workspace.curved.patch;
@@ -164,6 +164,8 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
             let is_kept = self.keep(manifold, &normals);
             if !is_kept {
                 manifold.set_contacts(normals.rounded, &self.along_normal(patch));
+                let shapes = [self.cso.shape_1.id(), self.cso.shape_2.id()];
+                (manifold.manifold).note_chosen(shapes, &mut workspace.still_cache);
             }
             return is_kept;
         }

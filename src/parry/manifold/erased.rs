@@ -94,6 +94,9 @@ pub(super) trait ErasedPoints {
     fn distance(&self, contact: usize) -> Option<f32>;
 
     /// In the caller's order of the shapes.
+    /// The point of the first contact on the first shape.
+    fn first_place(&self) -> Option<Vec3>;
+
     fn features(&self, contact: usize) -> Option<[PackedFeatureId; 2]>;
 
     fn set_features(&mut self, contact: usize, ids: [PackedFeatureId; 2]);
@@ -121,6 +124,10 @@ impl<C: Default + Copy> ErasedPoints for Vec<TrackedContact<C>> {
 
     fn distance(&self, contact: usize) -> Option<f32> {
         Some(self.get(contact)?.dist)
+    }
+
+    fn first_place(&self) -> Option<Vec3> {
+        Some(self.first()?.local_p1)
     }
 
     fn features(&self, contact: usize) -> Option<[PackedFeatureId; 2]> {

@@ -58,9 +58,12 @@ impl HalfSpaceUpdate<'_, '_> {
             self.manifold.set_axis(near.normal, vertices);
             return Stage::Axis;
         }
-        let is_kept =
-            self.is_held(near.signed_distance, cache) || self.update_contacts(&near, scratch);
-        if is_kept { Stage::Kept } else { Stage::Feature }
+        if self.is_held(near.signed_distance, cache) || self.update_contacts(&near, scratch) {
+            return Stage::Kept;
+        }
+        let shapes = [hull.id(), Some(self.pair.other.id())];
+        self.manifold.manifold.note_chosen(shapes, cache);
+        Stage::Feature
     }
 
     /// Leaves the contacts as they are, if that is right at this signed distance of the cores. Returns whether it is.
@@ -76,7 +79,7 @@ impl HalfSpaceUpdate<'_, '_> {
         let is_own = still.is_of_half_space(self.pair, self.pose, last);
         if is_own {
             self.manifold.manifold.hold(still);
-            still.store(cache, core_distance, last);
+            still.store(cache, core_distance);
         } else {
             *self.last = None;
         }

@@ -24,6 +24,12 @@ pub(super) struct PolytopeContacts<'a, B> {
 }
 
 impl<B: Polytope> PolytopeContacts<'_, B> {
+    /// Whether nothing constrains the normals.
+    #[inline]
+    pub fn is_free(&self) -> bool {
+        matches!(self.constraints, [Constraints::None, Constraints::None])
+    }
+
     /// Writes the contacts, or leaves the `last` ones where they are. Returns whether it left them.
     #[inline(always)]
     pub fn update_contacts(
@@ -33,7 +39,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
         near: &Proximity,
     ) -> bool {
         let normals = Normals::of(near, self.cso.pose);
-        if !matches!(self.constraints, [Constraints::None, Constraints::None]) {
+        if !self.is_free() {
             // Only parts of meshes and compounds have constraints. The copy keeps the answer of other pairs
             // in registers.
             let contacts = PolytopeContacts {

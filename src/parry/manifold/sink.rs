@@ -23,6 +23,8 @@ pub(super) struct ManifoldSink<'a, 'm, B> {
     /// The same, if they may stay as they are.
     still: Option<&'a Still>,
     is_kept: bool,
+    /// Whether contacts were chosen without constraints.
+    is_chosen: bool,
     /// The signed distance of the cores, if the contacts are as they were.
     held_at: Option<f64>,
     /// The separation that is proved by what the manifold remembers, if it need not change.
@@ -48,6 +50,7 @@ impl<'a, 'm, B: Polytope> ManifoldSink<'a, 'm, B> {
             last,
             still,
             is_kept: false,
+            is_chosen: false,
             held_at: None,
             still_apart: None,
         }
@@ -71,11 +74,15 @@ impl<'a, 'm, B: Polytope> ManifoldSink<'a, 'm, B> {
         }
     }
 
-    /// Stores the distance of a pair at rest.
+    /// Stores the distance of a pair at rest, or which shapes the contacts were chosen for.
     #[inline]
-    pub fn store_held(&self, cache: &mut StillCache) {
-        if let (Some(still), Some(distance), Some(last)) = (self.still, self.held_at, &self.last) {
-            still.store(cache, distance, last);
+    pub fn note(&self, cache: &mut StillCache) {
+        if let (Some(still), Some(distance)) = (self.still, self.held_at) {
+            still.store(cache, distance);
+        } else if self.is_chosen {
+            let cso = self.contacts.cso;
+            let shapes = [cso.shape_1.id(), cso.shape_2.id()];
+            self.manifold.note_chosen(shapes, cache);
         }
     }
 
@@ -148,5 +155,6 @@ impl<B: Polytope> Sink for ManifoldSink<'_, '_, B> {
         }
         let last = self.last.as_ref();
         self.is_kept = self.contacts.update_contacts(&mut manifold, last, near);
+        self.is_chosen = !self.is_kept && self.contacts.is_free();
     }
 }

@@ -18,7 +18,7 @@ use crate::parry::still_cache::{StillCache, StillPair};
 use crate::pose::RelativePose;
 use crate::query::{LastContacts, first_least};
 use crate::simd::LANES;
-use crate::support::{Cso, Support};
+use crate::support::{Cso, ShapeId, Support};
 use crate::tolerance::{DEPTH_ERROR, KEPT_DRIFT, STILL_DEPTH, STILL_TILT};
 
 /// Contacts of a pair at rest, measured along the stored normal at the present pose.
@@ -29,8 +29,9 @@ pub(super) struct Still {
     pair: StillPair,
     /// The normals of both shapes.
     normals: [DVec3; 2],
-    /// Whether the contacts are known to belong to the shapes.
+    /// Whether the contacts are known to belong to the shapes, and what tells both from others.
     are_own: bool,
+    tag: u64,
 }
 
 impl Still {
@@ -56,6 +57,7 @@ impl Still {
                 pair,
                 normals,
                 are_own: false,
+                tag: 0,
             });
         }
     }
@@ -76,17 +78,9 @@ impl Still {
 
     /// Looks up whether the contacts belong to the shapes.
     #[inline]
-    pub fn find_own(&mut self, cache: &StillCache, last: &LastContacts) {
-        self.are_own = cache.are_own(self.pair.key, self.hash(last));
-    }
-
-    /// Tells these contacts of these shapes from others.
-    fn hash(&self, last: &LastContacts) -> u64 {
-        let ids = self.pair.shapes.map(|id| id.number());
-        let vectors = [last.middle(), self.normals[0], self.normals[1]];
-        let numbers = vectors.iter().flat_map(|v| v.to_array());
-        let words = ids.into_iter().chain(numbers.map(f64::to_bits));
-        words.fold(0, extended)
+    pub fn find_own(&mut self, cache: &StillCache, manifold: &ErasedManifold<'_>) {
+        self.tag = manifold.tag(self.pair.shapes);
+        self.are_own = cache.are_own(self.pair.key, self.tag);
     }
 
     /// Whether the contacts stay as they are if the shapes have this signed distance.
@@ -143,10 +137,10 @@ impl Still {
     }
 
     /// Stores the signed distance of the cores, which was certified, and that the contacts belong to the shapes.
-    pub fn store(&self, cache: &mut StillCache, core_distance: f64, last: &LastContacts) {
+    pub fn store(&self, cache: &mut StillCache, core_distance: f64) {
         cache.store(&self.pair, core_distance);
         if !self.are_own {
-            cache.note_own(self.pair.key, self.hash(last));
+            cache.note_own(self.pair.key, self.tag);
         }
     }
 }
@@ -164,6 +158,23 @@ pub(super) fn is_settled(
 }
 
 impl ErasedManifold<'_> {
+    /// Tells contacts of shapes from others: by the first point, which stays while contacts keep their places.
+    fn tag(&self, shapes: [ShapeId; 2]) -> u64 {
+        let [first, second] = shapes.map(ShapeId::number);
+        let [x, y, z] = (self.points().first_place().unwrap_or_default().to_array())
+            .map(|coordinate| u64::from(coordinate.to_bits()));
+        let words = [first, second ^ x << 32, y << 32 | z];
+        words.into_iter().fold(0, extended)
+    }
+
+    /// Notes that the contacts were chosen for these shapes.
+    #[inline]
+    pub(super) fn note_chosen(&self, shapes: [Option<ShapeId>; 2], cache: &mut StillCache) {
+        if let [Some(first), Some(second)] = shapes {
+            cache.note_own(self.key(), self.tag([first, second]));
+        }
+    }
+
     /// Writes the distances, and leaves everything else.
     #[inline]
     pub(super) fn hold(&mut self, still: &Still) {

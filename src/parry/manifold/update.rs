@@ -142,8 +142,8 @@ impl<'a> UpdateManifold<'a> {
         if is_proved {
             self.manifold.hold(still);
             self.stats.record_free(Stage::Still);
-        } else if let Some(last) = last {
-            still.find_own(still_cache, last);
+        } else {
+            still.find_own(still_cache, &self.manifold);
         }
         is_proved
     }
@@ -177,7 +177,7 @@ impl<'a> UpdateManifold<'a> {
         let mut sink = ManifoldSink::new(&mut self.manifold, pair, frame, contacts, last, still);
         let stage = query.run_into(Full, &mut sink).ok_or(Unsupported)?;
         let (apart_by, stage) = (sink.still_apart(stage, cso), sink.stage(stage));
-        sink.store_held(&mut workspace.still_cache);
+        sink.note(&mut workspace.still_cache);
         if let (Some(separation), Some(apart)) = (apart_by, self.apart_pair(pair)) {
             let proofs = &mut workspace.apart_cache;
             let lever = frame.lever(cso, pair.order);
