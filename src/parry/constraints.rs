@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use parry3d::math::Pose;
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
 use parry3d::shape::TrianglePseudoNormals;
@@ -153,14 +153,19 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
         (chosen.1.len > 0).then_some(chosen)
     }
 
-    /// Whether a way out of a part leads through the whole part, to the side across from the other shape.
+    /// Whether a way out of a part leads through the whole part: it is longer than the part is thick, and the other
+    /// shape's centre is beneath that of the part.
     fn leads_through(&self, side: usize, out: &Corrected) -> bool {
+        let Self { cso, order, .. } = self;
         let along = out.normals[side].as_dvec3();
-        let widths = self.order.to_caller([
-            self.cso.shape_1.extent(along) + self.cso.shape_1.extent(-along),
-            self.cso.shape_2.extent(along) + self.cso.shape_2.extent(-along),
-        ]);
-        out.least.is_some_and(|least| -least > widths[side])
+        let [width, rise] = if order.to_caller([0, 1])[side] == 0 {
+            let other = cso.pose.point_to_1(cso.shape_2.center());
+            measure(cso.shape_1, other, along)
+        } else {
+            let other = cso.pose.point_to_2(cso.shape_1.center());
+            measure(cso.shape_2, other, along)
+        };
+        out.least.is_some_and(|least| -least > width) && rise < 0.0
     }
 
     /// Whether overlapping shapes that have no contact along a corrected normal are pushed apart along their own.
@@ -211,4 +216,10 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
         ]);
         covered.iter().position(|is_covered| *is_covered)
     }
+}
+
+/// The extent of a part along a direction, and how far a point is above its centre.
+fn measure(part: &impl Support, point: DVec3, along: DVec3) -> [f64; 2] {
+    let width = part.extent(along) + part.extent(-along);
+    [width, along.dot(point - part.center())]
 }

@@ -314,6 +314,28 @@ fn what_is_pressed_in_over_a_seam_comes_out_where_it_is() {
     }
 }
 
+/// Its way out is longer than the slab is thick, but does not lead through it.
+#[test]
+fn what_is_pressed_in_deeper_than_a_slab_comes_out_where_it_is() {
+    let slab = |x: Real| block(Vector::new(x, 0.46, -2.0), Vector::new(x + 2.5, 0.5, 2.0));
+    let flags = CompoundFlags::FIX_INTERNAL_EDGES;
+    let ground = SharedShape::new(Compound::with_flags(
+        vec![slab(0.0), slab(2.5)],
+        flags,
+        None,
+    ));
+    let half = Vector::splat(0.1);
+    for mover in [cuboid_hull(half), SharedShape::cylinder(half.y, half.x)] {
+        for i in -3i8..=3 {
+            let start = Vector::new(2.5 + 0.032 * Real::from(i), 0.45 + half.y, 0.013);
+            let pressed = ride(&ground, &mover, (start, 0.0, 0.0), 0.5, 60);
+            let what = format!("{:?} at {}", mover.shape_type(), start.x);
+            assert!((pressed.hop - 0.05).abs() < 0.01, "{what}: {}", pressed.hop);
+            assert!(pressed.moved < 0.01, "{what}: {}", pressed.moved);
+        }
+    }
+}
+
 /// A ring about y, taken apart into wedges.
 fn ring(wedges: usize, [inner, outer]: [Real; 2], half_height: Real) -> SharedShape {
     let wedge = |i: usize| {
