@@ -131,10 +131,26 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
         is_possible.then_some(corrected)
     }
 
+    /// The contacts that no other part covers, if shapes of this signed distance have any. If no parts that overlap
+    /// have one, their normals are not corrected.
+    pub fn uncovered(
+        &self,
+        chosen: Option<([Vec3; 2], Contacts)>,
+        signed_distance: f64,
+        along: impl FnMut(&Corrected) -> Option<([Vec3; 2], Contacts)>,
+    ) -> Option<([Vec3; 2], Contacts)> {
+        let found = chosen.and_then(|chosen| self.first_uncovered(chosen, along));
+        if found.is_none() && signed_distance < 0.0 {
+            let parts = self.constraints.iter().filter_map(|c| c.part());
+            parts.for_each(|part| part.is_left.set(true));
+        }
+        found
+    }
+
     /// The contacts, or other ones if another part covers the face that they are all on. Contacts along an
     /// outer normal are found by `along`. Normals are in the kernels' order. A way through a whole part is none:
     /// what is inside of a ring stays there.
-    pub fn uncovered(
+    fn first_uncovered(
         &self,
         mut chosen: ([Vec3; 2], Contacts),
         mut along: impl FnMut(&Corrected) -> Option<([Vec3; 2], Contacts)>,

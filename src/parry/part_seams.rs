@@ -4,6 +4,8 @@
 //! share only regions of their faces, or overlap slightly. Then it depends on the place whether a face is
 //! covered.
 
+use std::cell::Cell;
+
 use glam::Vec3;
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Pose;
@@ -20,6 +22,8 @@ pub(crate) struct PartSeams<'a> {
     pub id: u32,
     pub pos: &'a Pose,
     pub normals: &'a CompoundPseudoNormals,
+    /// Whether some part overlaps the other shape, but has no contact. Mostly another part has one there.
+    pub is_left: &'a Cell<bool>,
 }
 
 impl<'a> PartSeams<'a> {

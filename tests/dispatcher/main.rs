@@ -22,6 +22,7 @@ mod curved_queries;
 mod exact_cases;
 mod fallback;
 mod families;
+mod flagged_compounds;
 mod fuzz;
 mod hull_shape;
 mod hull_shape_solid;

@@ -12,6 +12,7 @@ use parry3d::shape::{Compound, Shape};
 use crate::at::At;
 use crate::parry::composite::seams::Seams;
 use crate::parry::composite::sub_manifolds::{SubManifolds, SubShape};
+use crate::parry::constraints::Constraints;
 use crate::parry::operand::Operand;
 use crate::parry::order::PairOrder;
 
@@ -29,21 +30,27 @@ pub(crate) fn compounds<M, C, F>(
     let prediction = sub_manifolds.prediction;
     let whole_2 = c2.local_aabb().transform_by(pos12).loosened(prediction);
     let whole_1 = c1.local_aabb().transform_by(&pos21).loosened(prediction);
-    let seams_1 = Seams::near(c1, &whole_2);
-    let seams_2 = Seams::near(c2, &whole_1);
-    for i in c1.bvh().intersect_aabb(&whole_2) {
-        let part_1 = part(c1, &seams_1, i);
-        let near_1 = c1.aabbs().at(i).loosened(sub_manifolds.prediction);
-        let pos_part1_2 = part_1.pos.map_or(*pos12, |pos| pos.inv_mul(pos12));
-        for k in c2.bvh().intersect_aabb(&near_1.transform_by(&pos21)) {
-            // Boxes around rotated boxes are large. With the compounds exchanged, many of them are apart.
-            if !box_in(c2, k, pos12).intersects(&near_1) {
-                continue;
+    let seams = [Seams::near(c1, &whole_2), Seams::near(c2, &whole_1)];
+    let update = |sub_manifolds: &mut SubManifolds<'_, M, C, F>, corrects: bool| {
+        for i in c1.bvh().intersect_aabb(&whole_2) {
+            let part_1 = part(c1, &seams[0], i, corrects);
+            let near_1 = c1.aabbs().at(i).loosened(prediction);
+            let pos_part1_2 = part_1.pos.map_or(*pos12, |pos| pos.inv_mul(pos12));
+            for k in c2.bvh().intersect_aabb(&near_1.transform_by(&pos21)) {
+                // Boxes around rotated boxes are large. With the compounds exchanged, many of them are apart.
+                if !box_in(c2, k, pos12).intersects(&near_1) {
+                    continue;
+                }
+                let part_2 = part(c2, &seams[1], k, corrects);
+                let pos12 = part_2.pos.map_or(pos_part1_2, |pos| pos_part1_2 * pos);
+                sub_manifolds.update_pair(&pos12, &part_1, &part_2);
             }
-            let part_2 = part(c2, &seams_2, k);
-            let pos12 = part_2.pos.map_or(pos_part1_2, |pos| pos_part1_2 * pos);
-            sub_manifolds.update_pair(&pos12, &part_1, &part_2);
         }
+    };
+    update(&mut sub_manifolds, true);
+    if seams.iter().any(Seams::leave_some) && !sub_manifolds.have_contacts() {
+        sub_manifolds.start_over();
+        update(&mut sub_manifolds, false);
     }
     sub_manifolds.finish();
 }
@@ -63,8 +70,16 @@ pub(crate) fn compound_and_convex<M, C, F>(
     let whole = SubShape::whole(convex);
     let reach = sub_manifolds.reach(&whole, pos12, order);
     let seams = Seams::near(compound, &reach);
-    for i in compound.bvh().intersect_aabb(&reach) {
-        sub_manifolds.update_part(pos12, &part(compound, &seams, i), &whole, order);
+    let update = |sub_manifolds: &mut SubManifolds<'_, M, C, F>, corrects: bool| {
+        for i in compound.bvh().intersect_aabb(&reach) {
+            let part = part(compound, &seams, i, corrects);
+            sub_manifolds.update_part(pos12, &part, &whole, order);
+        }
+    };
+    update(&mut sub_manifolds, true);
+    if seams.leave_some() && !sub_manifolds.have_contacts() {
+        sub_manifolds.start_over();
+        update(&mut sub_manifolds, false);
     }
     sub_manifolds.finish();
 }
@@ -73,12 +88,19 @@ fn box_in(compound: &Compound, part: u32, pose: &Pose) -> Aabb {
     compound.aabbs().at(part).transform_by(pose)
 }
 
-fn part<'a>(compound: &'a Compound, seams: &'a Seams<'_>, id: u32) -> SubShape<'a> {
+/// A part of a compound. If no part of an overlapping pair has a contact along a corrected normal, normals are left as
+/// they are.
+fn part<'a>(compound: &'a Compound, seams: &'a Seams<'_>, id: u32, corrects: bool) -> SubShape<'a> {
     let (pos, shape) = compound.shapes().at_ref(id);
+    let constraints = if corrects {
+        seams.of_part(id, pos)
+    } else {
+        Constraints::None
+    };
     SubShape {
         id,
         operand: Operand::new(&**shape),
         pos: Some(*pos),
-        constraints: seams.of_part(id, pos),
+        constraints,
     }
 }

@@ -1,5 +1,7 @@
 //! Corrections of normals at the seams between a compound's parts.
 
+use std::cell::Cell;
+
 use parry3d::bounding_volume::Aabb;
 use parry3d::math::Pose;
 use parry3d::shape::{Compound, CompoundFlags, ConvexPolyhedron, SharedShape};
@@ -16,6 +18,7 @@ pub(super) struct Seams<'a> {
     compound: &'a Compound,
     /// In the place of parry's own.
     computed: Option<PartNormals>,
+    is_left: Cell<bool>,
 }
 
 impl<'a> Seams<'a> {
@@ -31,7 +34,13 @@ impl<'a> Seams<'a> {
         Self {
             compound,
             computed: is_incomplete.then(compute),
+            is_left: Cell::new(false),
         }
+    }
+
+    /// Whether some part overlaps the other shape, but has no contact along a corrected normal.
+    pub fn leave_some(&self) -> bool {
+        self.is_left.get()
     }
 
     /// The corrections for the part at `pos`.
@@ -46,6 +55,7 @@ impl<'a> Seams<'a> {
             id,
             pos,
             normals,
+            is_left: &self.is_left,
         };
         normals.map_or(Constraints::None, |normals| {
             Constraints::OfPart(seams(normals))

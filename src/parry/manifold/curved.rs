@@ -224,7 +224,7 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
             corrected.and_then(|corrected| self.along_corrected(&pair, normals, &corrected, patch))
         };
         let along = |out: &Corrected| self.along(&pair, out, patch);
-        match chosen.and_then(|chosen| pair.uncovered(chosen, along)) {
+        match pair.uncovered(chosen, self.least, along) {
             Some((normals, contacts)) => manifold.set_contacts(normals, &contacts),
             // There is no contact, but the next query has a place to start from.
             None => manifold.set_axis(self.normal, [VertexId::default(); 2]),

@@ -94,8 +94,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
             corrected.and_then(|corrected| self.along_corrected(&pair, near, normals, &corrected))
         };
         let along = |out: &Corrected| self.along(&pair, near, out);
-        let contacts = contacts.and_then(|contacts| pair.uncovered(contacts, along));
-        match contacts {
+        match pair.uncovered(contacts, near.signed_distance, along) {
             Some((normals, contacts)) => write_corrected(cso, manifold, near, normals, contacts),
             // There is no contact, but the next query has a place to start from.
             None => manifold.set_axis(near.normal, query::vertices(cso, near.features)),
