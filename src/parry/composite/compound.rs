@@ -18,7 +18,7 @@ use crate::parry::order::PairOrder;
 
 /// Two compounds.
 pub(crate) fn compounds<M, C, F>(
-    mut sub_manifolds: SubManifolds<'_, M, C, F>,
+    sub_manifolds: SubManifolds<'_, M, C, F>,
     pos12: &Pose,
     [c1, c2]: [&Compound; 2],
 ) where
@@ -47,17 +47,12 @@ pub(crate) fn compounds<M, C, F>(
             }
         }
     };
-    update(&mut sub_manifolds, true);
-    if seams.iter().any(Seams::leave_some) && !sub_manifolds.have_contacts() {
-        sub_manifolds.start_over();
-        update(&mut sub_manifolds, false);
-    }
-    sub_manifolds.finish();
+    sub_manifolds.update_all(update, || seams.iter().any(Seams::leave_some));
 }
 
 /// A compound and a convex shape; the compound is first in `order`.
 pub(crate) fn compound_and_convex<M, C, F>(
-    mut sub_manifolds: SubManifolds<'_, M, C, F>,
+    sub_manifolds: SubManifolds<'_, M, C, F>,
     pos12: &Pose,
     compound: &Compound,
     convex: &dyn Shape,
@@ -76,12 +71,7 @@ pub(crate) fn compound_and_convex<M, C, F>(
             sub_manifolds.update_part(pos12, &part, &whole, order);
         }
     };
-    update(&mut sub_manifolds, true);
-    if seams.leave_some() && !sub_manifolds.have_contacts() {
-        sub_manifolds.start_over();
-        update(&mut sub_manifolds, false);
-    }
-    sub_manifolds.finish();
+    sub_manifolds.update_all(update, || seams.leave_some());
 }
 
 fn box_in(compound: &Compound, part: u32, pose: &Pose) -> Aabb {

@@ -60,7 +60,7 @@ impl<'a> Triangles<'a> {
 
 /// A shape made of triangles and a hull; the triangles are first in `order`.
 pub(crate) fn triangles_and_hull<M, C, F>(
-    mut sub_manifolds: SubManifolds<'_, M, C, F>,
+    sub_manifolds: SubManifolds<'_, M, C, F>,
     pos12: &Pose,
     triangles: Triangles<'_>,
     hull: &dyn Shape,
@@ -74,13 +74,13 @@ pub(crate) fn triangles_and_hull<M, C, F>(
     let near = sub_manifolds.reach(&hull, pos12, order);
     let is_flagged = triangles.is_flagged();
     let is_left = Cell::new(false);
-    let update = |sub_manifolds: &mut SubManifolds<'_, M, C, F>, is_beyond_border| {
+    let update = |sub_manifolds: &mut SubManifolds<'_, M, C, F>, corrects: bool| {
         triangles.each_near(&near, |id, triangle| {
             let normals = || triangles.normals(id);
             let seams = TriangleSeams {
                 normals: &normals,
                 is_left: &is_left,
-                is_beyond_border,
+                is_beyond_border: !corrects,
             };
             let seams = is_flagged.then_some(seams);
             let constraints = seams.map_or(Constraints::None, Constraints::OfTriangle);
@@ -92,10 +92,5 @@ pub(crate) fn triangles_and_hull<M, C, F>(
             sub_manifolds.update_part(pos12, &part, &hull, order);
         });
     };
-    update(&mut sub_manifolds, false);
-    if is_left.get() && !sub_manifolds.have_contacts() {
-        sub_manifolds.start_over();
-        update(&mut sub_manifolds, true);
-    }
-    sub_manifolds.finish();
+    sub_manifolds.update_all(update, || is_left.get());
 }

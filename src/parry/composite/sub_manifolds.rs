@@ -197,20 +197,31 @@ where
     }
 
     /// Whether any parts that were updated have contacts.
-    pub fn have_contacts(&self) -> bool {
+    fn have_contacts(&self) -> bool {
         let mut done = self.manifolds.iter().take(self.done);
         done.any(|manifold| !manifold.points.is_empty())
     }
 
     /// Forgets that any parts were updated.
-    pub fn start_over(&mut self) {
+    fn start_over(&mut self) {
         self.done = 0;
         self.searched = 0;
         self.places = None;
     }
 
+    /// Updates all parts, with corrected normals. If these leave some part that overlaps the other shape without a
+    /// contact, and no part has one, updates them once more, with normals as they are.
+    pub fn update_all(mut self, update: impl Fn(&mut Self, bool), leave_some: impl Fn() -> bool) {
+        update(&mut self, true);
+        if leave_some() && !self.have_contacts() {
+            self.start_over();
+            update(&mut self, false);
+        }
+        self.finish();
+    }
+
     /// Drops the manifolds of parts that no longer meet.
-    pub fn finish(self) {
+    fn finish(self) {
         debug_assert!(self.done <= self.manifolds.len());
         self.manifolds.truncate(self.done);
     }
