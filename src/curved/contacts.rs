@@ -1,7 +1,8 @@
 //! The choice of the places of a patch that become contacts.
 //!
-//! The rule is that of `manifold/reduce.rs`, except that low places do not come first. That one works in f32 on four corners at once, which only pays for the
-//! many corners of polygons. A curved patch has few places, in f64, and each comes with its points and features.
+//! The rule is that of `manifold/reduce.rs`, except that low places do not come first. That one works in f32 on four
+//! corners at once, which only pays for the many corners of polygons. A curved patch has few places, in f64, and each
+//! comes with its points and features.
 
 use glam::{DVec2, DVec3};
 

@@ -51,7 +51,7 @@ pub(crate) fn update_ball(
     order: PairOrder,
     update: &mut UpdateManifold<'_>,
 ) -> Result<(), Unsupported> {
-    if !matches!(update.constraints, [Constraints::None, Constraints::None]) {
+    if !Constraints::are_none(update.constraints) {
         return Err(Unsupported);
     }
     let contact = BallContact::new(update.pos12, order, solid, radii)?;

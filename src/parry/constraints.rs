@@ -12,7 +12,7 @@ use crate::parry::order::PairOrder;
 use crate::parry::part_seams::PartSeams;
 use crate::stats::Cost;
 use crate::support::{Cso, Support};
-use crate::tolerance::GRAZING;
+use crate::tolerance::{GRAZING, UNCORRECTED};
 
 /// The constraints that correct the normals of a part's contacts. Computing them may cost more than finding
 /// that there is no contact.
@@ -41,8 +41,10 @@ impl<'a> Constraints<'a> {
         constraints.map_or(Self::None, Self::Given)
     }
 
-    pub fn are_none(&self) -> bool {
-        matches!(self, Self::None)
+    /// Whether nothing constrains the normals of a pair.
+    #[inline]
+    pub fn are_none(of_pair: &[Self; 2]) -> bool {
+        matches!(of_pair, [Self::None, Self::None])
     }
 
     fn triangle(self) -> Option<TriangleSeams<'a>> {
@@ -129,6 +131,14 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
         let is_possible =
             c1.with(|c1| c2.with(|c2| (c1, c2).project_local_normals(self.pos12, n1, n2)));
         is_possible.then_some(corrected)
+    }
+
+    /// Whether the constraints leave the query's normals, which are in the kernels' order, as they are.
+    pub fn leaves(&self, corrected: Option<&Corrected>, normals: [Vec3; 2]) -> bool {
+        corrected.is_some_and(|corrected| {
+            let [normal, _] = self.order.to_kernel(corrected.normals);
+            normal.abs_diff_eq(normals[0], UNCORRECTED)
+        })
     }
 
     /// The contacts that no other part covers, if shapes of this signed distance have any. If no parts that overlap

@@ -27,8 +27,8 @@ use crate::stats::{SharedStats, Stats};
 ///
 /// | Query | Pairs that it answers itself, in either order |
 /// |---|---|
-/// | contact manifolds | a hull with a hull, cuboid, triangle, ball, capsule, segment or half-space; a cylinder or cone with a hull, cuboid, triangle, capsule, segment, cylinder or cone; two capsules |
-/// | `distance`, `closest_points`, `contact`, `intersection_test` | all convex shapes, but for half-spaces without a hull, and balls with shapes that are neither rounded nor hulls |
+/// | contact manifolds | a hull with a hull, cuboid, triangle, ball, capsule, segment or half-space; a cylinder or cone with a hull, cuboid, triangle, ball, capsule, segment, cylinder or cone, and with a half-space if it is rounded; two capsules |
+/// | `distance`, `closest_points`, `contact`, `intersection_test` | all convex shapes, but for half-spaces without a hull, and balls with shapes that are neither rounded nor hulls (`contact` knows those with cylinders and cones) |
 /// | `cast_shapes`, `cast_shapes_nonlinear` | all convex shapes but half-spaces |
 ///
 /// A hull is a `ConvexPolyhedron`, a `RoundConvexPolyhedron` or a [`HullShape`](crate::HullShape); cuboids, triangles,

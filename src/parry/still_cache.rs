@@ -22,7 +22,7 @@ const SLOT_BITS: u32 = 12;
 #[derive(Default)]
 pub(crate) struct StillCache {
     certified: Slots<Certified, SLOT_BITS>,
-    /// Hashes of contacts, and of the shapes that they were found to belong to.
+    /// Tags of contacts and of shapes to which they belong.
     own_contacts: Slots<u64, SLOT_BITS>,
 }
 
@@ -83,16 +83,15 @@ impl StillCache {
             && (known.distance - distance).abs() + known.motion_to(pair) <= tolerance
     }
 
-    /// Whether contacts with this hash were found to belong to the shapes of a pair. Contacts and shapes for which this is
-    /// wrong occur with a probability of 2^-64.
+    /// Whether contacts are known to belong to the shapes of a pair, by their tag.
     #[inline]
-    pub fn are_own(&self, key: u64, contacts: u64) -> bool {
-        self.own_contacts.get(key) == Some(&contacts)
+    pub fn are_own(&self, key: u64, tag: u64) -> bool {
+        self.own_contacts.get(key) == Some(&tag)
     }
 
     /// Notes that contacts belong to the shapes of a pair.
-    pub fn note_own(&mut self, key: u64, contacts: u64) {
-        *self.own_contacts.get_or_allocate(key) = contacts;
+    pub fn note_own(&mut self, key: u64, tag: u64) {
+        *self.own_contacts.get_or_allocate(key) = tag;
     }
 
     /// Stores a signed distance that was certified at the present pose.

@@ -78,7 +78,7 @@ impl<F> Updater<'_, F> {
             shapes: map_pair(*operands, |operand| operand.shape),
             pos12,
             prediction,
-            has_corrected_normals: !constraints.iter().all(Constraints::are_none),
+            has_corrected_normals: !Constraints::are_none(constraints),
             before: &before,
             after: &bare(manifold),
         });

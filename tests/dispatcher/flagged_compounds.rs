@@ -1,26 +1,22 @@
 //! Compounds whose normals are corrected at the seams between their parts.
 
-use isa_gjk::{HullShape, IsaGjkDispatcher};
+use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::QueryDispatcher;
 use parry3d::shape::{Compound, CompoundFlags, SharedShape};
-use testkit::generate::Rng;
+use testkit::generate::{Rng, prepared};
 use testkit::memory::{Memory, UpdateManifolds};
+use testkit::scenes::hulls::cuboid;
 
 /// A part of one of the kinds that decompositions and users have.
 fn part(rng: &mut Rng) -> SharedShape {
     let half = Vector::new(0.2, 0.3, 0.25) * rng.range(0.5, 1.5) as Real;
-    let corner = |i: u8| {
-        let sign = |bit: u8| if i >> bit & 1 == 0 { -1.0 } else { 1.0 };
-        half * Vector::new(sign(0), sign(1), sign(2))
-    };
-    let corners: Vec<Vector> = (0..8).map(corner).collect();
     match rng.count(0, 4) {
         0 => SharedShape::ball(half.x),
         1 => SharedShape::cylinder(half.y, half.x),
         2 => SharedShape::cuboid(half.x, half.y, half.z),
-        3 => SharedShape::convex_hull(&corners).expect("a box"),
-        _ => SharedShape::new(HullShape::from_points(&corners).expect("a box")),
+        3 => cuboid(half).expect("a box"),
+        _ => prepared(&cuboid(half).expect("a box")),
     }
 }
 

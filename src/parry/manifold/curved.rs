@@ -17,7 +17,7 @@ use crate::parry::workspace::Workspace;
 use crate::query::{Feature, LastContacts, PairMemory, Proximity};
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, FaceId, VertexId};
-use crate::tolerance::{DEPTH_GAP, UNCORRECTED};
+use crate::tolerance::DEPTH_GAP;
 use crate::tuning::ABSURD_DEPTH;
 
 impl UpdateManifold<'_> {
@@ -146,7 +146,7 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         if let Some(still) = still.filter(|still| still.shows(self.least))
             && let Some(last) = self.last
         {
-            if !still.is_of(self.cso, self.border_radii, last) {
+            if !still.is_of(self.cso, (manifold, self.border_radii), last) {
                 let near = Near {
                     last: None,
                     ..*self
@@ -160,7 +160,7 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         }
         let patch = &mut workspace.curved.patch;
         let normals = Normals::of(&self.proximity(), self.cso.pose);
-        if let [Constraints::None, Constraints::None] = constraints.0 {
+        if Constraints::are_none(constraints.0) {
             let is_kept = self.keep(manifold, &normals);
             if !is_kept {
                 manifold.set_contacts(normals.rounded, &self.along_normal(patch));
@@ -211,10 +211,7 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
             max_distance: self.max_distance + self.border_radii[0] + self.border_radii[1],
         };
         let corrected = pair.correct(pair.order.to_caller(normals.rounded));
-        let is_as_it_was = corrected.as_ref().is_some_and(|corrected| {
-            let [normal, _] = pair.order.to_kernel(corrected.normals);
-            normal.abs_diff_eq(normals.rounded[0], UNCORRECTED)
-        });
+        let is_as_it_was = pair.leaves(corrected.as_ref(), normals.rounded);
         if is_as_it_was && self.keep(manifold, normals) {
             return true;
         }

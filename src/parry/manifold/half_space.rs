@@ -76,7 +76,7 @@ impl HalfSpaceUpdate<'_, '_> {
         let (Some(still), Some(last)) = (still, &*self.last) else {
             return false;
         };
-        let is_own = still.is_of_half_space(self.pair, self.pose, last);
+        let is_own = still.is_of_half_space(self.pair, self.pose, &self.manifold, last);
         if is_own {
             self.manifold.manifold.hold(still);
             still.store(cache, core_distance);

@@ -22,7 +22,7 @@ impl UpdateManifold<'_> {
         pair: &Pair<'_, impl SurfacePieces, HalfSpace>,
         workspace: &mut Workspace,
     ) -> Result<(), Unsupported> {
-        if !matches!(self.constraints, [Constraints::None, Constraints::None]) {
+        if !Constraints::are_none(self.constraints) {
             return Err(Unsupported);
         }
         let pose = pair.pose(valid_pose(self.pos12)?);

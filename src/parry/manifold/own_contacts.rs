@@ -2,7 +2,8 @@
 //! since the contacts were chosen.
 //!
 //! Each shape is looked at in its own frame, along the stored normals: so while the shapes stay the same, the answer
-//! does too, however they move. What was once found is noted in the [`StillCache`], which only saves time.
+//! does too, however they move. The [`StillCache`] notes for which shapes contacts were chosen, and for which they were
+//! found to be right. This only saves time.
 //!
 //! [`StillCache`]: crate::parry::still_cache::StillCache
 

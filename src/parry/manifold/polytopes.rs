@@ -11,7 +11,6 @@ use crate::map_pair::map_pair;
 use crate::parry::constraints::{ConstrainedPair, Constraints, Corrected};
 use crate::query::{self, LastContacts, Proximity};
 use crate::support::{Cso, Polytope};
-use crate::tolerance::UNCORRECTED;
 use crate::tuning::ABSURD_DEPTH;
 
 pub(super) struct PolytopeContacts<'a, B> {
@@ -27,7 +26,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
     /// Whether nothing constrains the normals.
     #[inline]
     pub fn is_free(&self) -> bool {
-        matches!(self.constraints, [Constraints::None, Constraints::None])
+        Constraints::are_none(self.constraints)
     }
 
     /// Writes the contacts, or leaves the `last` ones where they are. Returns whether it left them.
@@ -48,8 +47,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
             };
             return contacts.update_constrained(manifold, last, near, &normals);
         }
-        let is_kept = !manifold.has_rolled(self.cso, normals.exact)
-            && manifold.keep_contacts(last, near, &normals, self.cso.min_radius());
+        let is_kept = self.keep(manifold, last, near, &normals);
         if !is_kept {
             let mut contacts = manifold::contacts(self.cso, near, self.max_distance, self.scratch);
             if manifold.border_radii != [0.0; 2] && contacts.len > 1 {
@@ -59,6 +57,19 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
             manifold.set_contacts(normals.rounded, &contacts);
         }
         is_kept
+    }
+
+    /// Keeps the contacts where they are, if they are still in place.
+    #[inline]
+    fn keep(
+        &self,
+        manifold: &mut KernelManifold<'_, '_>,
+        last: Option<&LastContacts>,
+        near: &Proximity,
+        normals: &Normals,
+    ) -> bool {
+        !manifold.has_rolled(self.cso, normals.exact)
+            && manifold.keep_contacts(last, near, normals, self.cso.min_radius())
     }
 
     /// Like [`update_contacts`](Self::update_contacts), along normals that the constraints correct.
@@ -78,14 +89,8 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
             max_distance: self.max_distance,
         };
         let corrected = pair.correct(pair.order.to_caller(normals.rounded));
-        let is_as_it_was = corrected.as_ref().is_some_and(|corrected| {
-            let [normal, _] = pair.order.to_kernel(corrected.normals);
-            normal.abs_diff_eq(normals.rounded[0], UNCORRECTED)
-        });
-        if is_as_it_was
-            && !manifold.has_rolled(cso, normals.exact)
-            && manifold.keep_contacts(last, near, normals, cso.min_radius())
-        {
+        let is_as_it_was = pair.leaves(corrected.as_ref(), normals.rounded);
+        if is_as_it_was && self.keep(manifold, last, near, normals) {
             return true;
         }
         let contacts = if is_as_it_was {

@@ -145,7 +145,7 @@ impl<B: Polytope> Sink for ManifoldSink<'_, '_, B> {
             && still.shows(near.signed_distance - (border_1 + border_2))
             && let Some(last) = self.last.as_ref()
         {
-            if still.is_of(self.contacts.cso, self.pair.border_radii, last) {
+            if still.is_of(self.contacts.cso, (&manifold, self.pair.border_radii), last) {
                 manifold.manifold.hold(still);
                 self.is_kept = true;
                 self.held_at = Some(near.signed_distance);

@@ -27,8 +27,6 @@ pub(super) struct Still {
     /// The least of them, and thus that of the shapes, if nothing has to change.
     least: f64,
     pair: StillPair,
-    /// The normals of both shapes.
-    normals: [DVec3; 2],
     /// Whether the contacts are known to belong to the shapes, and what tells both from others.
     are_own: bool,
     tag: u64,
@@ -46,7 +44,7 @@ impl Still {
         still: &mut Option<Self>,
     ) {
         manifold.read_contacts(pose, last);
-        if let (Some(last), Some(normals @ [normal, _])) = (last, manifold.normals())
+        if let (Some(last), Some([normal, _])) = (last, manifold.normals())
             && last.are_within(normal, KEPT_DRIFT * pair.radius)
         {
             let distances = last.distances(normal).to_array();
@@ -55,7 +53,6 @@ impl Still {
                 distances,
                 least,
                 pair,
-                normals,
                 are_own: false,
                 tag: 0,
             });
@@ -94,11 +91,12 @@ impl Still {
     pub fn is_of<A: Support, B: Support>(
         &self,
         cso: &Cso<'_, A, B>,
-        border_radii: [f64; 2],
+        (manifold, border_radii): (&KernelManifold<'_, '_>, [f64; 2]),
         last: &LastContacts,
     ) -> bool {
+        let points = || last.points(cso.pose);
         self.are_own
-            || self.depths_match(cso.pose, border_radii, last, |[on_1, on_2]| {
+            || self.depths_match((manifold, border_radii), points, |[on_1, on_2]| {
                 Some([on_1.depths(cso.shape_1)?, on_2.depths(cso.shape_2)?])
             })
     }
@@ -109,10 +107,12 @@ impl Still {
         &self,
         pair: &Pair<'_, HalfSpace>,
         pose: &RelativePose,
+        manifold: &KernelManifold<'_, '_>,
         last: &LastContacts,
     ) -> bool {
+        let points = || last.points(pose);
         self.are_own
-            || self.depths_match(pose, pair.border_radii, last, |[on_1, on_2]| {
+            || self.depths_match((manifold, pair.border_radii), points, |[on_1, on_2]| {
                 Some([on_1.depths(pair.hull)?, on_2.depths_in(pair.other)?])
             })
     }
@@ -121,15 +121,17 @@ impl Still {
     #[inline(never)]
     fn depths_match(
         &self,
-        pose: &RelativePose,
-        border_radii: [f64; 2],
-        last: &LastContacts,
+        (manifold, border_radii): (&KernelManifold<'_, '_>, [f64; 2]),
+        points: impl FnOnce() -> [[DVec3; LANES]; 2],
         depths: impl FnOnce([ContactsOnShape<'_>; 2]) -> Option<[[f64; LANES]; 2]>,
     ) -> bool {
-        let points = last.points(pose);
+        let Some(normals) = manifold.normals() else {
+            return false;
+        };
+        let points = points();
         let on = |side: usize| ContactsOnShape {
             points: &points[side],
-            normal: self.normals[side],
+            normal: normals[side],
             border_radius: border_radii[side],
             radius: self.pair.radius,
         };

@@ -128,7 +128,7 @@ impl<'a> UpdateManifold<'a> {
         still_pair: impl FnOnce(Quat, u64) -> Option<StillPair>,
     ) -> bool {
         // Corrected normals need not be those of the query.
-        if matches!(self.constraints, [Constraints::None, Constraints::None])
+        if Constraints::are_none(self.constraints)
             && is_settled(&self.manifold, pair.order, pose)
             && let Some(still_pair) = still_pair(self.pos12.rotation, self.manifold.key())
         {
