@@ -1,4 +1,4 @@
-//! Slices with indices of type u32, as hulls store them: they are half as long as `usize`.
+//! Short indices, as hulls store them: they take half or a quarter of the bytes of a `usize`.
 
 /// Access to elements by short indices.
 pub(crate) trait At<T> {
@@ -63,7 +63,20 @@ impl<T> At<T> for [T] {
 
     #[inline]
     fn short_len(&self) -> u32 {
-        debug_assert!(u32::try_from(self.len()).is_ok());
-        self.len() as u32
+        to_u32(self.len())
     }
+}
+
+/// An index that is known to fit into 32 bits.
+#[inline]
+pub(crate) const fn to_u32(index: usize) -> u32 {
+    debug_assert!(index.leading_zeros() >= usize::BITS - u32::BITS);
+    index as u32
+}
+
+/// An index that is known to fit into 16 bits.
+#[inline]
+pub(crate) const fn to_u16(index: usize) -> u16 {
+    debug_assert!(index.leading_zeros() >= usize::BITS - u16::BITS);
+    index as u16
 }

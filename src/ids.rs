@@ -4,6 +4,7 @@ use std::fmt;
 use std::num::NonZeroU64;
 use std::sync::atomic::{AtomicU64, Ordering};
 
+use crate::at::to_u32;
 use crate::mix::extended;
 
 /// Defines an id, which is a number of 30 bits at most.
@@ -18,7 +19,7 @@ macro_rules! id {
             /// The id with this number.
             #[inline]
             pub const fn new(number: usize) -> Self {
-                Self(number as u32)
+                Self(to_u32(number))
             }
 
             /// Its number, as an index.

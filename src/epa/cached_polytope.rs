@@ -10,7 +10,7 @@ use glam::DVec3;
 
 use super::clearance::{Cap, Clearance, KnownDepth};
 use super::polytope::{EpaScratch, ExpandingPolytope, min_no_nan};
-use crate::at::At;
+use crate::at::{At, to_u16};
 use crate::stats::Cost;
 use crate::support::{Cso, CsoVertex, Polytope, Support, VertexId};
 use crate::tolerance::{DEPTH_GAP, PROOF_MARGIN};
@@ -180,7 +180,7 @@ fn vertex_key(vertex: &CsoVertex, center: DVec3) -> [u16; 2] {
     if vertex.w == center {
         CENTER
     } else {
-        vertex.ids.map(|id| id.index() as u16)
+        vertex.ids.map(|id| to_u16(id.index()))
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::graph::FaceCorner;
 use super::lists::Rows;
+use crate::at::to_u16;
 use crate::support::FaceId;
 
 /// The cluster of each face, and the faces under the outline of each cluster.
@@ -49,7 +50,7 @@ impl FaceClusters {
         if self.of_face.is_empty() {
             self.of_face = vec![NONE; faces].into();
         }
-        let number = self.faces.len() as u16;
+        let number = to_u16(self.faces.len());
         for &face in members {
             self.of_face[usize::from(face)] = number;
         }

@@ -2,6 +2,7 @@
 
 use std::iter;
 
+use crate::at::to_u16;
 use crate::support::{EdgeId, VertexId};
 
 /// The lower bits of an edge's id are its slot among the neighbours of its lower vertex; the bits above are
@@ -190,7 +191,7 @@ impl EdgeGraph {
                 slot = if is_first { s * LAST + i } else { slot };
             }
         }
-        (slot != NONE).then_some(slot as u16)
+        (slot != NONE).then(|| to_u16(slot))
     }
 
     /// The end vertices of an edge.

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::at::to_u16;
 use crate::support::VertexId;
 
 /// There is a cell for each vertex, up to this many cells per cube edge, which is enough for 6,000 vertices.
@@ -24,7 +25,7 @@ impl StartTable {
         let vertices = (0..6 * grid * grid)
             .map(|cell| {
                 last = support(cell_direction(grid, cell), last);
-                last.index() as u16
+                to_u16(last.index())
             })
             .collect();
         Self { grid, vertices }

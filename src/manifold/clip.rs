@@ -9,6 +9,7 @@
 //! than all the arithmetic for four corners. So everything is computed in fours for all possible corners, and
 //! then the actual ones are gathered.
 
+use crate::at::to_u16;
 use crate::simd::f32x4;
 
 use super::clip_vertices::ClipVertices;
@@ -154,11 +155,11 @@ impl Clipper {
         let width = self.subject.width();
         let crossings = self.window.width() * width;
         if source < crossings {
-            VertexOrigin::Crossing((source / width) as u16, (source % width) as u16)
+            VertexOrigin::Crossing(to_u16(source / width), to_u16(source % width))
         } else if source - crossings < width {
-            VertexOrigin::Subject((source - crossings) as u16)
+            VertexOrigin::Subject(to_u16(source - crossings))
         } else if source < self.first_beside() {
-            VertexOrigin::Window((source - crossings - width) as u16)
+            VertexOrigin::Window(to_u16(source - crossings - width))
         } else {
             let (shape, vertex) = self.beside[source - self.first_beside()];
             VertexOrigin::Beside(shape, vertex)

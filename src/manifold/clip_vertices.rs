@@ -1,5 +1,6 @@
 //! The corners of an intersection, in a list.
 
+use crate::at::to_u32;
 use crate::simd::f32x4;
 use glam::Vec2;
 
@@ -46,7 +47,7 @@ impl ClipVertices {
             there &= there - 1;
             self.x[self.count] = x[i];
             self.y[self.count] = y[i];
-            self.sources[self.count] = (source + i) as u32;
+            self.sources[self.count] = to_u32(source + i);
             self.count += 1;
         }
     }
@@ -59,7 +60,7 @@ impl ClipVertices {
         }
         self.x[self.count] = at.x;
         self.y[self.count] = at.y;
-        self.sources[self.count] = source as u32;
+        self.sources[self.count] = to_u32(source);
         self.count += 1;
     }
 

@@ -7,6 +7,7 @@ use glam::Vec2;
 use super::clip_vertices::ClipVertices;
 use super::contacts::MAX_POINTS;
 use crate::arg_max::ArgMax4;
+use crate::at::to_u32;
 use crate::simd::{LANES, f32x4, first_lanes, lane_mask, u32x4};
 use crate::tuning::CORNER_RISE;
 
@@ -42,7 +43,7 @@ pub(super) struct CandidateSummary {
 /// The ids of the corners in a row. They count from 1; the id 0 means no corner.
 #[inline(always)]
 fn ids(row: usize) -> u32x4 {
-    u32x4::splat((LANES * row) as u32) + u32x4::new([1, 2, 3, 4])
+    u32x4::splat(to_u32(LANES * row)) + u32x4::new([1, 2, 3, 4])
 }
 
 /// The number of the corner with the greatest measure.

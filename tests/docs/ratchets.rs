@@ -157,7 +157,7 @@ fn few_files_know_simd() {
 /// Ids are types of their own: only other numbers are cast.
 #[test]
 fn few_integers_are_cast() {
-    for (limit, targets) in [(50, &["usize"][..]), (26, &["u16", "u32"])] {
+    for (limit, targets) in [(50, &["usize"][..]), (15, &["u16", "u32"])] {
         let is_cast = |line: &str| {
             let mut pairs = words(line).zip(words(line).skip(1));
             pairs.any(|(word, to)| word == "as" && targets.contains(&to))

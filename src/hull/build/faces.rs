@@ -10,7 +10,7 @@ use super::face_plane::{FacePlane, normal_of};
 use super::flat_edges::NearlyFlatEdges;
 use super::half_edge::{HalfEdge, HalfEdgeMesh, triangle};
 use super::regions::CoplanarRegions;
-use crate::at::At;
+use crate::at::{At, to_u16};
 use crate::hull::faces::{FaceRecord, Faces, HAS_SIMILAR_NEIGHBOR};
 use crate::hull::graph::FaceCorner;
 use crate::tolerance::{CLUSTER_ANGLE_COS, FACE_FLATNESS};
@@ -175,7 +175,7 @@ impl Builder<'_> {
     /// Adds the plane of a face whose corners come next, and returns the number of the face.
     #[inline]
     fn add_plane(&mut self, plane: &FacePlane) -> u16 {
-        let face = self.polygons.len() as u16;
+        let face = to_u16(self.polygons.len());
         if plane.is_overtopped {
             self.merged.overtopped.push(face);
         }

@@ -1,6 +1,7 @@
 //! The edge graph of a surface.
 
 use super::half_edge::{DirectedEdge, HalfEdgeMesh};
+use crate::at::to_u16;
 use crate::hull::graph::{BLOCK, EdgeGraph, LAST, MARK, NeighborBlock, OVERFLOW, PLATEAU_SEARCH};
 use crate::support::VertexId;
 
@@ -76,7 +77,7 @@ impl NeighborBlock {
     /// With another block after it.
     fn with_overflow(mut self, slot: usize) -> Self {
         self.to[OVERFLOW] |= MARK;
-        self.left[LAST] = slot as u16;
+        self.left[LAST] = to_u16(slot);
         self
     }
 }

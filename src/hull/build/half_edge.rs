@@ -2,7 +2,7 @@
 
 use std::mem;
 
-use crate::at::At;
+use crate::at::{At, to_u16};
 use crate::hull::HullError;
 use crate::hull::graph::FaceCorner;
 
@@ -215,7 +215,7 @@ fn sides_by_start(triangles: &[[u32; 3]], first: &mut [u32]) -> Vec<DirectedEdge
             *sides.at_mut(*place) = DirectedEdge {
                 to: to as u16,
                 third: third as u16,
-                triangle: t as u16,
+                triangle: to_u16(t),
                 side,
             };
         }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::area_vectors::AreaVectors;
 use super::flat_edges::NearlyFlatEdges;
 use super::half_edge::{HalfEdge, HalfEdgeMesh, next, triangle};
-use crate::at::At;
+use crate::at::{At, to_u32};
 use crate::hull::lists::largest_first;
 use crate::tolerance::{FACE_ANGLE_COS, FACE_FLATNESS};
 
@@ -113,7 +113,7 @@ impl CoplanarRegions {
                 }
                 if joins(other) {
                     self.of[other] = region;
-                    self.triangles.push(other as u32);
+                    self.triangles.push(to_u32(other));
                 } else {
                     grown = Grown::UpToOthers;
                 }

@@ -3,7 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::area_vectors::{AreaVectors, Volume, longest_side};
-use crate::at::At;
+use crate::at::{At, to_u32};
 use crate::hull::HullError;
 use crate::hull::climb::{self, HillClimb};
 use crate::hull::faces::Faces;
@@ -44,7 +44,7 @@ pub(super) fn validate_distinct(points: &[Vec3]) -> Result<(), HullError> {
             }
             place = (place + 1) & mask;
         }
-        table[place] = i as u32;
+        table[place] = to_u32(i);
     }
     Ok(())
 }

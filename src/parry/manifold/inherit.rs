@@ -6,6 +6,7 @@ use parry3d::query::TrackedContact;
 use parry3d::shape::PackedFeatureId;
 
 use super::packed_feature::pack;
+use crate::at::to_u32;
 use crate::manifold::{Contacts, MAX_POINTS};
 use crate::map_pair::map_pair;
 use crate::parry::order::PairOrder;
@@ -140,7 +141,7 @@ impl FeatureKeys {
     #[inline(always)]
     fn new([first, second]: [[u32; MAX_POINTS]; 2], count: usize) -> Self {
         debug_assert!(count <= MAX_POINTS, "{count} contacts");
-        let counted = u32x4::new([0, 1, 2, 3]).simd_lt(u32x4::splat(count as u32));
+        let counted = u32x4::new([0, 1, 2, 3]).simd_lt(u32x4::splat(to_u32(count)));
         let features = map_pair([first, second], |row| u32x4::new(row) & counted);
         Self(contact_keys(features))
     }

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::facet::{HullFacet, NONE};
 use super::orientation::ExactPlane;
-use crate::at::At;
+use crate::at::{At, to_u32};
 use crate::hull::HullError;
 use crate::hull::build::validate::MAX_VERTICES;
 
@@ -63,7 +63,7 @@ impl<'a> GrowingHull<'a> {
         }
         let is_beneath = base.height(points[d]) < 0.0;
         let [b, c] = if is_beneath { [b, c] } else { [c, b] };
-        let [a, b, c, d] = [a, b, c, d].map(|v| v as u32);
+        let [a, b, c, d] = [a, b, c, d].map(to_u32);
         let mut surface = Self {
             points,
             extent,
@@ -129,7 +129,7 @@ impl<'a> GrowingHull<'a> {
         while facet < self.facets.len() {
             if self.facets[facet].last_above != NONE {
                 let eye = self.facets[facet].peak.1;
-                self.remove_seen(eye, facet as u32, &mut horizon, &mut seen);
+                self.remove_seen(eye, to_u32(facet), &mut horizon, &mut seen);
                 self.removed += seen.len();
                 let first = self.facets.len();
                 self.close(eye, &horizon);
