@@ -4,7 +4,7 @@ use glam::{DQuat, DVec3};
 use parry3d::math::Pose;
 
 /// The place of one shape in the frame of another: `p ↦ rotation · p + translation`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct ExactPose {
     pub rotation: DQuat,
     pub translation: DVec3,

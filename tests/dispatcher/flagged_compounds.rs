@@ -1,23 +1,75 @@
 //! Compounds whose normals are corrected at the seams between their parts.
 
 use isa_gjk::IsaGjkDispatcher;
-use parry3d::math::{Pose, Real, Vector};
-use parry3d::query::QueryDispatcher;
+use parry3d::math::{Real, Vector};
 use parry3d::shape::{Compound, CompoundFlags, SharedShape};
+use testkit::curved::{Body, Difference};
 use testkit::generate::{Rng, prepared};
 use testkit::memory::{Memory, UpdateManifolds};
-use testkit::scenes::hulls::cuboid;
+use testkit::pose::ExactPose;
 
-/// A part of one of the kinds that decompositions and users have.
-fn part(rng: &mut Rng) -> SharedShape {
+/// Less of an overlap need not have a contact: where it ends depends on the rounding of f32.
+const LEAST_OVERLAP: f64 = 1e-4;
+
+/// A part, and its pose in the whole.
+type Part = (ExactPose, Body);
+
+/// A body of one of the kinds that decompositions and users have.
+fn body(rng: &mut Rng) -> Body {
     let half = Vector::new(0.2, 0.3, 0.25) * rng.range(0.5, 1.5) as Real;
+    let signs = |i: usize| Vector::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32);
+    let corners: Vec<_> = (0..8)
+        .map(|i| half * (signs(i) * 2.0 - Vector::ONE))
+        .collect();
+    let hull = || Body::hull(&corners, 0.0).expect("a box");
     match rng.count(0, 4) {
-        0 => SharedShape::ball(half.x),
-        1 => SharedShape::cylinder(half.y, half.x),
-        2 => SharedShape::cuboid(half.x, half.y, half.z),
-        3 => cuboid(half).expect("a box"),
-        _ => prepared(&cuboid(half).expect("a box")),
+        0 => Body::ball(half.x),
+        1 => Body::cylinder(half.y, half.x, 0.0),
+        2 => Body::cuboid(half, 0.0),
+        3 => hull(),
+        _ => Body {
+            shape: prepared(&hull().shape),
+            ..hull()
+        },
     }
+}
+
+fn parts(rng: &mut Rng) -> Vec<Part> {
+    let count = rng.count(2, 5);
+    let part = |_| {
+        let pose = ExactPose {
+            translation: rng.direction() * rng.range(0.0, 0.5),
+            rotation: match rng.count(0, 1) {
+                0 => Default::default(),
+                _ => rng.rotation(),
+            },
+        };
+        (pose.rounded(), body(rng))
+    };
+    (0..count).map(part).collect()
+}
+
+fn compound(parts: &[Part]) -> SharedShape {
+    let shapes = parts.iter();
+    let shapes = shapes.map(|(pose, body)| (pose.to_f32(), body.shape.clone()));
+    let flags = CompoundFlags::FIX_INTERNAL_EDGES;
+    SharedShape::new(Compound::with_flags(shapes.collect(), flags, None))
+}
+
+/// Whether some part of the one certainly overlaps one of the other, which is at `pose`.
+fn overlap(pose: ExactPose, parts: &[Part], others: &[Part]) -> bool {
+    let pairs = parts
+        .iter()
+        .flat_map(|part| others.iter().map(move |other| (part, other)));
+    pairs.into_iter().any(|((at_1, body_1), (at_2, body_2))| {
+        let inverse = at_1.inverse();
+        let between = ExactPose {
+            rotation: inverse.rotation * pose.rotation * at_2.rotation,
+            translation: inverse.apply(pose.apply(at_2.translation)),
+        };
+        let difference = Difference::new([body_1, body_2], between);
+        difference.signed_distance().upper < -LEAST_OVERLAP
+    })
 }
 
 /// A normal may be corrected away at each part that overlaps, but not at all of them.
@@ -27,27 +79,21 @@ fn what_overlaps_a_flagged_compound_has_a_contact() {
     let ours = IsaGjkDispatcher::default();
     let mut overlapping = 0;
     for _ in 0..4_000 {
-        let parts = (0..rng.count(2, 5)).map(|_| {
-            let place = (rng.direction() * rng.range(0.0, 0.5)).as_vec3();
-            let pose = if rng.count(0, 1) == 0 {
-                Pose::from_translation(place)
-            } else {
-                Pose::from_parts(place, rng.rotation().as_quat())
-            };
-            (pose, part(&mut rng))
-        });
-        let parts: Vec<_> = parts.collect();
-        let flags = CompoundFlags::FIX_INTERNAL_EDGES;
-        let compound = SharedShape::new(Compound::with_flags(parts, flags, None));
-        let other = match rng.count(0, 3) {
-            0 => compound.clone(),
-            _ => part(&mut rng),
+        let parts = parts(&mut rng);
+        let shape = compound(&parts);
+        let (others, other) = if rng.count(0, 3) == 0 {
+            (parts.clone(), shape.clone())
+        } else {
+            let other = body(&mut rng);
+            let shape = other.shape.clone();
+            (vec![(ExactPose::default(), other)], shape)
         };
-        let place = (rng.direction() * rng.range(0.1, 0.9)).as_vec3();
-        let pose = Pose::from_parts(place, rng.rotation().as_quat());
-        let shapes = [&*compound, &*other];
-        let meets = ours.intersection_test(&pose, shapes[0], shapes[1]);
-        if !meets.is_ok_and(|meets| meets.intersecting) {
+        let pose = ExactPose {
+            translation: rng.direction() * rng.range(0.1, 0.9),
+            rotation: rng.rotation(),
+        };
+        let pose = pose.rounded();
+        if !overlap(pose, &parts, &others) {
             continue;
         }
         overlapping += 1;
@@ -56,13 +102,14 @@ fn what_overlaps_a_flagged_compound_has_a_contact() {
             manifolds,
             workspace,
         } = &mut memory;
-        let updated = ours.update_manifolds(&pose, shapes, 0.02, manifolds, workspace);
+        let shapes = [&*shape, &*other];
+        let updated = ours.update_manifolds(&pose.to_f32(), shapes, 0.02, manifolds, workspace);
         assert!(updated.is_ok());
         let contacts: usize = memory.manifolds.iter().map(|m| m.points.len()).sum();
         assert!(
             contacts > 0,
             "{pose:?}: {:?}",
-            compound.as_compound().map(Compound::shapes)
+            Compound::shapes(shape.as_compound().expect("a compound"))
         );
     }
     assert!(overlapping > 1_500, "only {overlapping} overlap");
