@@ -112,6 +112,24 @@ fn a_compound_is_as_near_as_its_nearest_hull() {
     report.conclude();
 }
 
+/// At a maximum distance of zero, too.
+#[test]
+fn what_overlaps_a_compound_intersects_it_for_nearest_points() {
+    let parts = [-1.0, 1.0].map(|x| (Pose::translation(x, 0.0, 0.0), cube()));
+    let pair = SharedShape::compound(parts.to_vec());
+    for max_distance in [-1.0, 0.0, 0.1] {
+        for (x, expected) in [(1.25, true), (3.0, false)] {
+            let pose = Pose::translation(x, 0.0, 0.0);
+            for (pose, shapes) in [(pose, [&pair, &cube()]), (pose.inverse(), [&cube(), &pair])] {
+                let found =
+                    dispatcher().closest_points(&pose, &**shapes[0], &**shapes[1], max_distance);
+                let meets = found == Ok(ClosestPoints::Intersecting);
+                assert_eq!(meets, expected, "{x} up to {max_distance}: {found:?}");
+            }
+        }
+    }
+}
+
 /// The triangles of a mesh or height field.
 fn triangles(shape: &dyn Shape) -> Vec<Triangle> {
     match (shape.as_trimesh(), shape.as_heightfield()) {

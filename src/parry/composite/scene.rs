@@ -84,6 +84,8 @@ pub(crate) fn closest_points(
     g2: &dyn Shape,
     max_dist: Real,
 ) -> Result<ClosestPoints, Unsupported> {
+    // parry looks at parts whose boxes are nearer than this: at zero, at none.
+    let max_dist = max_dist.max(Real::MIN_POSITIVE);
     Ok(if let Some(c1) = g1.as_composite_shape() {
         closest_points_composite_shape_shape(us, pos12, c1, g2, max_dist)
     } else {
