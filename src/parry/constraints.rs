@@ -106,6 +106,8 @@ pub(crate) struct ConstrainedPair<'a, 'c, A, B> {
     pub constraints: [Constraints<'a>; 2],
     pub pos12: &'a Pose,
     pub max_distance: f64,
+    /// The sum of the radii of the borders around the shapes of `cso`.
+    pub border: f64,
 }
 
 impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
@@ -141,8 +143,8 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
         })
     }
 
-    /// The contacts that no other part covers, if shapes of this signed distance have any. If no parts that overlap
-    /// have one, their normals are not corrected.
+    /// The contacts that no other part covers, if shapes of this signed distance, with their borders, have any. If no
+    /// parts that overlap have one, their normals are not corrected.
     pub fn uncovered(
         &self,
         chosen: Option<([Vec3; 2], Contacts)>,

@@ -17,11 +17,7 @@ type Part = (ExactPose, Body);
 /// A body of one of the kinds that decompositions and users have.
 fn body(rng: &mut Rng) -> Body {
     let half = Vector::new(0.2, 0.3, 0.25) * rng.range(0.5, 1.5) as Real;
-    let signs = |i: usize| Vector::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32);
-    let corners: Vec<_> = (0..8)
-        .map(|i| half * (signs(i) * 2.0 - Vector::ONE))
-        .collect();
-    let hull = || Body::hull(&corners, 0.0).expect("a box");
+    let hull = || hull(half, 0.0);
     match rng.count(0, 4) {
         0 => Body::ball(half.x),
         1 => Body::cylinder(half.y, half.x, 0.0),
@@ -32,6 +28,20 @@ fn body(rng: &mut Rng) -> Body {
             ..hull()
         },
     }
+}
+
+/// A box as a hull.
+fn hull(half: Vector, border: Real) -> Body {
+    let signs = |i: usize| Vector::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32);
+    let corners: Vec<_> = (0..8)
+        .map(|i| half * (signs(i) * 2.0 - Vector::ONE))
+        .collect();
+    Body::hull(&corners, border).expect("a box")
+}
+
+/// A hull most of which is border.
+fn rounded(rng: &mut Rng) -> Body {
+    hull(Vector::new(0.1, 0.15, 0.12), rng.range(0.05, 0.2) as Real)
 }
 
 fn parts(rng: &mut Rng) -> Vec<Part> {
@@ -81,12 +91,14 @@ fn what_overlaps_a_flagged_compound_has_a_contact() {
     for _ in 0..4_000 {
         let parts = parts(&mut rng);
         let shape = compound(&parts);
-        let (others, other) = if rng.count(0, 3) == 0 {
-            (parts.clone(), shape.clone())
-        } else {
-            let other = body(&mut rng);
-            let shape = other.shape.clone();
-            (vec![(ExactPose::default(), other)], shape)
+        let alone = |body: Body| {
+            let shape = body.shape.clone();
+            (vec![(ExactPose::default(), body)], shape)
+        };
+        let (others, other) = match rng.count(0, 4) {
+            0 => (parts.clone(), shape.clone()),
+            1 => alone(rounded(&mut rng)),
+            _ => alone(body(&mut rng)),
         };
         let pose = ExactPose {
             translation: rng.direction() * rng.range(0.1, 0.9),

@@ -192,3 +192,46 @@ fn each_triangle_has_the_contacts_that_it_has_alone() {
     }
     assert!(compared > 1000, "only {compared} contacts were compared");
 }
+
+/// Beside the border of a mesh, where no contact pushes it upwards, what overlaps is pushed sideways, though it does so
+/// only with its own rounded border.
+#[test]
+fn a_rounded_hull_is_pushed_from_the_border_of_a_mesh() {
+    let square = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let corners = square.map(|(x, z)| Vector::new(x, 0.0, z)).to_vec();
+    let triangles = vec![[0, 2, 1], [0, 3, 2]];
+    let floor = TriMesh::with_flags(corners, triangles, TriMeshFlags::FIX_INTERNAL_EDGES);
+    let floor = floor.expect("a surface");
+    let half = 0.25;
+    let core: Vec<Vector> = (0..8)
+        .map(|i| {
+            [0, 1, 2]
+                .map(|axis| if i >> axis & 1 == 0 { -half } else { half })
+                .into()
+        })
+        .collect();
+    for border in [0.0, 0.1, 0.2] {
+        let body = SharedShape::round_convex_hull(&core, border).expect("a box");
+        for depth in [0.01, 0.03] {
+            let pose = Pose::translation(1.0 + half + border - depth, -0.05, 0.0);
+            let mut manifolds: Vec<Manifold> = Vec::new();
+            IsaGjkDispatcher::default()
+                .update_manifolds(
+                    &pose,
+                    [&floor, &*body],
+                    PREDICTION,
+                    &mut manifolds,
+                    &mut None,
+                )
+                .expect("supported");
+            let least = manifolds
+                .iter()
+                .filter_map(deepest)
+                .fold(Real::MAX, Real::min);
+            assert!(
+                (least + depth).abs() < TOLERANCE,
+                "{border}, {depth}: {least}"
+            );
+        }
+    }
+}

@@ -203,12 +203,14 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         normals: &Normals,
         patch: &mut Patch,
     ) -> bool {
+        let border = self.border_radii[0] + self.border_radii[1];
         let pair = ConstrainedPair {
             cso: self.cso,
             order: manifold.order,
             constraints: *constraints,
             pos12,
-            max_distance: self.max_distance + self.border_radii[0] + self.border_radii[1],
+            max_distance: self.max_distance + border,
+            border,
         };
         let corrected = pair.correct(pair.order.to_caller(normals.rounded));
         let is_as_it_was = pair.leaves(corrected.as_ref(), normals.rounded);
@@ -270,8 +272,7 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         let normal = normal.as_dvec3().normalize();
         patch.find(self.cso, normal, self.border_radii);
         patch.leave_out_corners_beside_lines();
-        let borders = self.border_radii[0] + self.border_radii[1];
-        let least = corrected.least.map(|least| least - borders);
+        let least = corrected.least.map(|least| least - pair.border);
         let least = least.unwrap_or(ABSURD_DEPTH * self.least.min(0.0));
         let least = least - DEPTH_GAP * self.cso.min_radius();
         let is_found = patch.deepest_point().is_some();

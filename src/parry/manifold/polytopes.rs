@@ -87,6 +87,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
             constraints: *self.constraints,
             pos12: self.pos12,
             max_distance: self.max_distance,
+            border: manifold.border_radii.iter().sum(),
         };
         let corrected = pair.correct(pair.order.to_caller(normals.rounded));
         let is_as_it_was = pair.leaves(corrected.as_ref(), normals.rounded);
@@ -99,7 +100,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
             corrected.and_then(|corrected| self.along_corrected(&pair, near, normals, &corrected))
         };
         let along = |out: &Corrected| self.along(&pair, near, out);
-        match pair.uncovered(contacts, near.signed_distance, along) {
+        match pair.uncovered(contacts, pair.least(near), along) {
             Some((normals, contacts)) => write_corrected(cso, manifold, near, normals, contacts),
             // There is no contact, but the next query has a place to start from.
             None => manifold.set_axis(near.normal, query::vertices(cso, near.features)),
@@ -122,10 +123,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
         let found = self.along(pair, near, corrected);
         let is_edge_on = found.is_none();
         let found = found.filter(|(_, contacts)| contacts.len > 0);
-        if found.is_some()
-            || near.signed_distance >= 0.0
-            || !(is_edge_on || pair.is_beyond_border())
-        {
+        if found.is_some() || pair.least(near) >= 0.0 || !(is_edge_on || pair.is_beyond_border()) {
             return found;
         }
         // Overlapping shapes must be pushed apart, even if not along the corrected normal.
@@ -141,10 +139,17 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
         let normals = pair.order.to_kernel(corrected.normals);
         let normal = normals[0].as_dvec3().normalize();
         // The query's depth says little about contacts along a corrected normal.
-        let absurd = || ABSURD_DEPTH * near.signed_distance.min(0.0);
+        let absurd = || ABSURD_DEPTH * pair.least(near).min(0.0) + pair.border;
         let range = [corrected.least.unwrap_or_else(absurd), self.max_distance];
         let contacts = manifold::contacts_along(self.cso, near, normal, range, self.scratch)?;
         Some((normals, contacts))
+    }
+}
+
+impl<B: Polytope> ConstrainedPair<'_, '_, Hull, B> {
+    /// The signed distance of the shapes with their borders.
+    fn least(&self, near: &Proximity) -> f64 {
+        near.signed_distance - self.border
     }
 }
 
