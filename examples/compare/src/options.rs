@@ -20,7 +20,7 @@ const SECONDS_UNTIL_ASLEEP: u32 = 12;
 pub struct Options {
     /// What is in the world: drum, pile, stack, coins, wall, dominoes, spin, top, rolling, asleep,
     /// cuboids, balls, mixed, compound, trimesh, heightfield, rocks, stones, dice, pebbles, cubes,
-    /// plates, needles, pencils, rings, breach, rubble, reshaped or bursts
+    /// plates, needles, pencils, rings, breach, rubble, grippers, shaken-grippers, reshaped or bursts
     #[arg(long, default_value_t = Scene::Drum)]
     pub scene: Scene,
 
@@ -39,8 +39,8 @@ pub struct Options {
     bodies: Option<u32>,
 
     /// The largest extent of the largest body, in metres [default: 5 to 40 cm for rocks, stones,
-    /// dice, pebbles, cubes, plates, needles, pencils, rings, breach, rubble and bursts; about a metre
-    /// elsewhere]
+    /// dice, pebbles, cubes, plates, needles, pencils, rings, breach, rubble, grippers and bursts;
+    /// about a metre elsewhere]
     #[arg(long, value_parser = positive::<Real>)]
     size: Option<Real>,
 
