@@ -1,7 +1,5 @@
 //! The planes of all faces of a small hull, eight at a time: whether a ball is inside of it.
 
-use std::array;
-
 use glam::{DVec3, Vec3};
 
 use crate::simd::f32x8;
@@ -13,6 +11,9 @@ const MOST: usize = 32;
 
 /// How many planes are compared at once.
 const LANES: usize = 8;
+/// Room for the planes of the most faces.
+const ROWS: usize = MOST / LANES;
+
 /// The bits of all of them.
 const ALL: u32 = (1 << LANES) - 1;
 
@@ -20,7 +21,8 @@ const ALL: u32 = (1 << LANES) - 1;
 #[derive(Clone, Debug)]
 pub(super) struct FacePlanes {
     /// Normals coordinate by coordinate, and offsets. Padding has planes at infinity.
-    rows: Box<[[f32x8; 4]]>,
+    // Plain arrays: allocating memory for aligned ones takes four times as long.
+    rows: Box<[[[f32; LANES]; 4]]>,
     /// The largest offset.
     farthest: f32,
 }
@@ -28,27 +30,25 @@ pub(super) struct FacePlanes {
 impl FacePlanes {
     /// From the normals and offsets of all faces. Those of slivers, which have no plane, are infinite.
     pub fn new(planes: impl ExactSizeIterator<Item = (Vec3, f64)>) -> Self {
-        let mut known: Vec<(Vec3, f32)> = Vec::new();
-        if planes.len() <= MOST {
-            known.extend(planes.map(|(normal, offset)| (normal, offset as f32)));
+        let count = if planes.len() > MOST { 0 } else { planes.len() };
+        let mut rows = [[
+            [0.0; LANES],
+            [0.0; LANES],
+            [0.0; LANES],
+            [f32::INFINITY; LANES],
+        ]; ROWS];
+        let mut farthest = 0.0_f32;
+        for (i, (normal, offset)) in planes.take(count).enumerate() {
+            let [x, y, z, distance] = &mut rows[i / LANES % ROWS];
+            let (lane, offset) = (i % LANES, offset as f32);
+            [x[lane], y[lane], z[lane]] = normal.to_array();
+            distance[lane] = offset;
+            farthest = farthest.max(offset.abs());
         }
-        if known.iter().any(|(_, offset)| offset.is_infinite()) {
-            known.clear();
-        }
-        let row = |chunk: &[(Vec3, f32)]| {
-            let plane = |i: usize| chunk.get(i).map_or((Vec3::ZERO, f32::INFINITY), |p| *p);
-            let lanes: [(Vec3, f32); LANES] = array::from_fn(plane);
-            [
-                f32x8::new(lanes.map(|(normal, _)| normal.x)),
-                f32x8::new(lanes.map(|(normal, _)| normal.y)),
-                f32x8::new(lanes.map(|(normal, _)| normal.z)),
-                f32x8::new(lanes.map(|(_, offset)| offset)),
-            ]
-        };
-        let offsets = known.iter().map(|(_, offset)| offset.abs());
+        let used = if farthest.is_finite() { count } else { 0 };
         Self {
-            farthest: offsets.fold(0.0, f32::max),
-            rows: known.chunks(LANES).map(row).collect(),
+            rows: rows[..used.div_ceil(LANES)].into(),
+            farthest,
         }
     }
 
@@ -60,8 +60,9 @@ impl FacePlanes {
         let least = f32x8::splat(radius as f32 + INSET_ROUNDING as f32 * size);
         let [x, y, z] = point.to_array().map(f32x8::splat);
         let (mut nearer, mut shift) = (0, 0);
-        for [normal_x, normal_y, normal_z, offset] in &self.rows {
-            let height = *offset - (*normal_x * x + *normal_y * y + *normal_z * z);
+        for row in &self.rows {
+            let [normal_x, normal_y, normal_z, offset] = row.map(f32x8::new);
+            let height = offset - (normal_x * x + normal_y * y + normal_z * z);
             // A height that is NaN is not beyond.
             nearer |= (ALL ^ height.simd_ge(least).to_bitmask()) << shift;
             shift += 8;

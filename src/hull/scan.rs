@@ -31,7 +31,8 @@ const LANES: usize = 8;
 pub(super) struct Scan {
     /// Eight vertices a row, coordinate by coordinate, relative to the centre and in units of the radius. The
     /// last row is filled up with its first vertex.
-    rows: Box<[[f32x8; 3]]>,
+    // Plain arrays: allocating memory for aligned ones takes four times as long.
+    rows: Box<[[[f32; LANES]; 3]]>,
     /// A bit for each vertex.
     all: u64,
 }
@@ -45,7 +46,7 @@ impl Scan {
         let place = |p: &Vec3| ((p.as_dvec3() - center) / radius).as_vec3();
         let rows = points.chunks(LANES).map(|chunk| {
             let lanes: [Vec3; LANES] = array::from_fn(|i| place(chunk.get(i).unwrap_or(&chunk[0])));
-            array::from_fn(|axis| f32x8::new(lanes.map(|p| p[axis])))
+            array::from_fn(|axis| lanes.map(|p| p[axis]))
         });
         Some(Self {
             rows: rows.collect(),
@@ -109,8 +110,9 @@ impl Scan {
     pub fn greatest_height(&self, dir: DVec3) -> f64 {
         let dir = dir.as_vec3().to_array().map(f32x8::splat);
         let mut highest = f32x8::splat(f32::NEG_INFINITY);
-        for [x, y, z] in &self.rows {
-            highest = highest.fast_max(*x * dir[0] + *y * dir[1] + *z * dir[2]);
+        for row in &self.rows {
+            let [x, y, z] = row.map(f32x8::new);
+            highest = highest.fast_max(x * dir[0] + y * dir[1] + z * dir[2]);
         }
         f64::from(greatest(highest) + SCAN_ROUNDING)
     }
@@ -129,7 +131,10 @@ impl Scan {
             (dir / size, 1.0)
         };
         let dir = dir.as_vec3().to_array().map(f32x8::splat);
-        let heights = rows.map(|[x, y, z]| x * dir[0] + y * dir[1] + z * dir[2]);
+        let heights = rows.each_ref().map(|row| {
+            let [x, y, z] = row.map(f32x8::new);
+            x * dir[0] + y * dir[1] + z * dir[2]
+        });
         let highest = heights.into_iter().reduce(f32x8::fast_max);
         let highest = highest.unwrap_or(f32x8::ZERO);
         let least = f32x8::splat(greatest(highest) - SCAN_ROUNDING * size as f32);
