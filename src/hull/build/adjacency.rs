@@ -271,6 +271,9 @@ pub(super) fn index(triangle: u8) -> usize {
 
 /// The sides of a polygon.
 fn sides(polygon: &[u32]) -> impl Iterator<Item = (u32, u32)> {
-    let ends = polygon.iter().skip(1).chain(polygon.first());
-    polygon.iter().copied().zip(ends.copied())
+    let next = |i: usize| polygon[if i + 1 < polygon.len() { i + 1 } else { 0 }];
+    polygon
+        .iter()
+        .enumerate()
+        .map(move |(i, &from)| (from, next(i)))
 }

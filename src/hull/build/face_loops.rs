@@ -26,11 +26,12 @@ impl FlatFaces {
             let edges = polyhedron.edges_adj_to_face().get(range)?;
             let (lowest, _) = corners.iter().enumerate().min_by_key(|(_, v)| **v)?;
             polygon.clear();
-            polygon.extend(corners[lowest..].iter().chain(&corners[..lowest]));
+            polygon.extend_from_slice(&corners[lowest..]);
+            polygon.extend_from_slice(&corners[..lowest]);
             let normal = side_normal(points, &polygon, radius)?;
-            let edges = edges[lowest..].iter().chain(&edges[..lowest]);
-            for (i, &edge) in edges.enumerate() {
-                let here = SideBorder::new(points, &polygon, i, normal)?;
+            for (i, &edge) in edges.iter().enumerate() {
+                let corner = if i < lowest { i + corners.len() } else { i } - lowest;
+                let here = SideBorder::new(points, &polygon, corner, normal)?;
                 let border = borders.get_mut(usize::try_from(edge).ok()?)?;
                 match border.take() {
                     Some(there) if here.bends(&there, radius) => open -= 1,
@@ -82,21 +83,22 @@ impl FaceTriangles {
         for (number, face) in (0..).zip(polyhedron.faces()) {
             let range = places(face.first_vertex_or_edge, face.num_vertices_or_edges);
             let corners = polyhedron.vertices_adj_to_face().get(range)?;
-            match *corners {
-                [a, b, c] => triangles.push([a, b, c]),
-                [a, b, c, d] if let Some(upward) = bends_upward(points, corners) => {
-                    let halves = if upward {
-                        [[b, c, d], [d, a, b]]
-                    } else {
-                        [[a, b, c], [c, d, a]]
-                    };
-                    triangles.extend(halves);
-                }
-                _ => {
-                    within.find(polyhedron);
-                    within.split(number, corners, &mut triangles)?;
-                    seem_flat |= bends_upward(points, corners).is_none();
-                }
+            // Nearly all faces are triangles.
+            if let &[a, b, c] = corners {
+                triangles.push([a, b, c]);
+                continue;
+            }
+            let upward = bends_upward(points, corners);
+            if let (&[a, b, c, d], Some(upward)) = (corners, upward) {
+                triangles.extend(if upward {
+                    [[b, c, d], [d, a, b]]
+                } else {
+                    [[a, b, c], [c, d, a]]
+                });
+            } else {
+                within.find(polyhedron);
+                within.split(number, corners, &mut triangles)?;
+                seem_flat |= upward.is_none();
             }
         }
         (triangles.len() == count).then_some(Self {
@@ -129,10 +131,12 @@ pub(super) fn sorted(triangles: &[[u32; 3]], corners: usize) -> Option<Vec<[u32;
     Some(rows.into_items())
 }
 
-/// Whether the fourth corner of a face is above the first three; `None` if it is nearly in their plane.
+/// Whether the fourth corner of a face is above the first three; `None` if there is none, or it is nearly in their
+/// plane.
 fn bends_upward(points: &[Vec3], corners: &[u32]) -> Option<bool> {
-    let at = |i: usize| points.at(corners[i]).as_dvec3();
-    let [a, b, c] = [1, 2, 3].map(|i| at(i) - at(0));
+    let &first: &[u32; 4] = corners.first_chunk()?;
+    let [origin, a, b, c] = first.map(|v| points.at(v).as_dvec3());
+    let [a, b, c] = [a - origin, b - origin, c - origin];
     let normal: DVec3 = a.cross(b);
     let height = normal.dot(c);
     let is_flat =

@@ -37,6 +37,15 @@ impl Default for AroundVertices {
 }
 
 impl AroundVertices {
+    /// Fills the first block with one neighbour and the face left of the edge to it.
+    #[inline]
+    pub fn fill_block(&mut self, to: u16, left: u16) {
+        let (all_to, all_left) = (&mut self.to, &mut self.left);
+        if let (Some(first), Some(faces)) = (all_to.first_chunk_mut(), all_left.first_chunk_mut()) {
+            (*first, *faces) = ([to; BLOCK], [left; BLOCK]);
+        }
+    }
+
     /// Adds the neighbours of a vertex to the graph.
     #[inline]
     pub fn push_to(&self, graph: &mut GraphBuilder, count: usize) {

@@ -5,7 +5,7 @@ use super::builder::SteepBuilder;
 use crate::hull::build::adjacency::{VERTICES, index, row};
 use crate::hull::build::graph::GraphBuilder;
 use crate::hull::faces::HAS_SIMILAR_NEIGHBOR;
-use crate::hull::graph::{BLOCK, EdgeGraph};
+use crate::hull::graph::EdgeGraph;
 use crate::tolerance::{CLUSTER_ANGLE_COS, NEARLY_FLAT_COS, STEEP_EDGE};
 
 impl SteepBuilder {
@@ -35,8 +35,7 @@ impl SteepBuilder {
         let (mut to, mut left) = (lowest, self.matrix.left(from, lowest));
         let mut left_face = self.matrix.face_of(left, MERGED);
         // Unused slots of the first block.
-        self.around.to[..BLOCK].fill(lowest.into());
-        self.around.left[..BLOCK].fill(left_face.into());
+        self.around.fill_block(lowest.into(), left_face.into());
         let mut has_all = true;
         for (slot, place) in (0..).zip(0..VERTICES) {
             has_all &= self.matrix.has(to, from);
@@ -72,7 +71,10 @@ impl SteepBuilder {
                 self.points[row(edge.right_corner.into())] - self.points[row(edge.from.into())];
             let [here, there] = [left, right].map(|t| self.areas.vector(t));
             let lengths = [left, right].map(|t| self.areas.length(t));
-            are_steep &= -here.dot(across) > least * (lengths[0] + lengths[1]);
+            // As `Bends` does. No value is NaN here.
+            let [one, other] = lengths;
+            let longest = if one > other { one } else { other };
+            are_steep &= -here.dot(across) > least * longest;
             // The normal of a polygon is not that of its triangles.
             if self.has_polygons || here.dot(there) >= NEARLY_FLAT_COS * lengths[0] * lengths[1] {
                 self.mark_if_similar(edge);
