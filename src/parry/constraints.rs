@@ -27,7 +27,7 @@ pub(crate) enum Constraints<'a> {
 /// One triangle of a mesh whose inner edges are corrected.
 #[derive(Clone, Copy)]
 pub(crate) struct TriangleSeams<'a> {
-    pub normals: &'a dyn Fn() -> Option<TrianglePseudoNormals>,
+    pub normals: &'a dyn Fn() -> Option<LeaningNormals>,
     /// Whether some triangle overlaps the other shape, but has no contact along the corrected normal. Mostly a
     /// triangle beside it has one.
     pub is_left: &'a Cell<bool>,
@@ -68,24 +68,43 @@ impl<'a> Constraints<'a> {
             Self::Given(constraints) => f(Some(constraints)),
             Self::OfPart(part) => f(Some(part.normals)),
             Self::OfTriangle(triangle) => match (triangle.normals)() {
-                Some(normals) => f(Some(&Leaning(normals))),
+                Some(normals) => f(Some(&normals)),
                 None => f(None),
             },
         }
     }
 }
 
-/// Pseudo-normals of a triangle. A direction that lies in its plane up to rounding counts as one to its
-/// front. Hulls that stand upright in a floor have such normals.
-struct Leaning(TrianglePseudoNormals);
+/// Pseudo-normals of a triangle. A direction that lies in its plane up to rounding counts as one to its front, or, if it
+/// has two sides, to that on which the other shape is. Hulls that stand upright in a floor have such normals.
+pub(crate) struct LeaningNormals {
+    normals: TrianglePseudoNormals,
+    is_behind: bool,
+}
 
-impl NormalConstraints for Leaning {
+impl LeaningNormals {
+    /// For a shape that is beyond the triangle from `on_triangle` to `middle`.
+    pub fn towards(middle: Vec3, on_triangle: Vec3, normals: TrianglePseudoNormals) -> Self {
+        let is_behind = normals.two_sided && normals.face.dot(middle - on_triangle) < 0.0;
+        Self { normals, is_behind }
+    }
+}
+
+impl NormalConstraints for LeaningNormals {
     fn project_local_normal_mut(&self, normal: &mut Vec3) -> bool {
-        let along_face = normal.dot(self.0.face);
-        if (-GRAZING as f32..0.0).contains(&along_face) {
-            *normal = (*normal + self.0.face * (GRAZING as f32)).normalize();
+        let along_face = normal.dot(self.normals.face);
+        let level = GRAZING as f32;
+        let lean = if self.is_behind && (0.0..level).contains(&along_face) {
+            -level
+        } else if !self.is_behind && (-level..0.0).contains(&along_face) {
+            level
+        } else {
+            0.0
+        };
+        if lean != 0.0 {
+            *normal = (*normal + self.normals.face * lean).normalize();
         }
-        self.0.project_local_normal_mut(normal)
+        self.normals.project_local_normal_mut(normal)
     }
 }
 

@@ -13,6 +13,7 @@ use parry3d::shape::{
     TrianglePseudoNormals,
 };
 use parry3d::utils::Array2;
+use testkit::families;
 use testkit::generate::Rng;
 use testkit::memory::{Manifold, UpdateManifolds};
 
@@ -234,4 +235,58 @@ fn a_rounded_hull_is_pushed_from_the_border_of_a_mesh() {
             );
         }
     }
+}
+
+/// The floor whose triangles have two sides, and are wound the other way if it is `turned`.
+fn two_sided_floor(turned: bool) -> TriMesh {
+    let floor = families::flat_mesh();
+    let floor = floor.as_trimesh().expect("a mesh");
+    let mut triangles = floor.indices().to_vec();
+    if turned {
+        triangles
+            .iter_mut()
+            .for_each(|triangle| triangle.swap(1, 2));
+    }
+    let flags = TriMeshFlags::FIX_INTERNAL_EDGES_TWO_SIDED;
+    TriMesh::with_flags(floor.vertices().to_vec(), triangles, flags).expect("a surface")
+}
+
+/// What has sunk into triangles of two sides is pushed back to where its middle is, whichever way they are wound.
+#[test]
+fn triangles_of_two_sides_push_plates_back() {
+    let floors = [false, true].map(two_sided_floor);
+    let (mut rng, mut pushed) = (Rng::new(5), 0);
+    for round in 0..1000 {
+        let (plate, pose) = families::sunk_plate(&mut rng);
+        if pose.translation.y < 0.02 {
+            continue;
+        }
+        let least = floors.each_ref().map(|floor| {
+            let mut manifolds: Vec<Manifold> = Vec::new();
+            IsaGjkDispatcher::default()
+                .update_manifolds(
+                    &pose,
+                    [floor, &*plate],
+                    PREDICTION,
+                    &mut manifolds,
+                    &mut None,
+                )
+                .expect("supported");
+            let along = |is_along: fn(Real) -> bool| {
+                let along = manifolds.iter().filter(|m| is_along(m.local_n1.y));
+                along.filter_map(deepest).fold(Real::MAX, Real::min)
+            };
+            assert!(
+                along(|y| y < -0.9) > 0.0,
+                "{round}: pushed through at {pose:?}"
+            );
+            along(|y| y > 0.9)
+        });
+        assert!(
+            (least[0] - least[1]).abs() < TOLERANCE,
+            "{round}: {least:?} at {pose:?}"
+        );
+        pushed += usize::from(least[0] < 0.0);
+    }
+    assert!(pushed > 500, "only {pushed} are pushed out");
 }

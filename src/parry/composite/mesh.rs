@@ -14,7 +14,7 @@ use parry3d::shape::{
 };
 
 use crate::parry::composite::sub_manifolds::{SubManifolds, SubShape};
-use crate::parry::constraints::{Constraints, TriangleSeams};
+use crate::parry::constraints::{Constraints, LeaningNormals, TriangleSeams};
 use crate::parry::order::PairOrder;
 
 /// A shape made of triangles.
@@ -74,9 +74,13 @@ pub(crate) fn triangles_and_hull<M, C, F>(
     let near = sub_manifolds.reach(&hull, pos12, order);
     let is_flagged = triangles.is_flagged();
     let is_left = Cell::new(false);
+    let middle = near.center();
     let update = |sub_manifolds: &mut SubManifolds<'_, M, C, F>, corrects: bool| {
         triangles.each_near(&near, |id, triangle| {
-            let normals = || triangles.normals(id);
+            let normals = || {
+                let normals = triangles.normals(id)?;
+                Some(LeaningNormals::towards(middle, triangle.a, normals))
+            };
             let seams = TriangleSeams {
                 normals: &normals,
                 is_left: &is_left,
