@@ -26,9 +26,27 @@ impl Flat<'_> {
         p + self.along * self.height(p)
     }
 
-    /// Whether a point is over or under the side, up to rounding.
-    pub fn covers(&self, p: DVec3) -> bool {
-        self.inset(p).is_some()
+    /// The distance along the contact normal from a point to the plane, if the point is over or under the side, up to
+    /// rounding.
+    pub fn height_if_over(&self, p: DVec3) -> Option<f64> {
+        let height = self.height(p);
+        let p = p + self.along * height;
+        let is_over = match self.side.outline {
+            Outline::Disc { center, radius } => {
+                let most = radius * (1.0 + ON_OUTLINE);
+                p.distance_squared(center) <= most * most
+            }
+            Outline::Polygon(_) => self.edges().all(|[from, to]| {
+                let inward = self.side.normal.cross(to - from);
+                let inside = inward.dot(p - from);
+                // perf: only beside the outline are lengths needed.
+                inside >= 0.0 || {
+                    let length = inward.length();
+                    inside + ON_OUTLINE * length * (length + p.distance(from)) >= 0.0
+                }
+            }),
+        };
+        is_over.then_some(height)
     }
 
     /// The distance from the outline of a point that is projected into the plane. It is enlarged by what
@@ -64,11 +82,19 @@ impl Flat<'_> {
         nearest.1.cross(self.side.normal)
     }
 
+    /// Both corners of each edge.
+    fn edges(&self) -> impl Iterator<Item = [DVec3; 2]> {
+        let last = self.corners.last().map_or(DVec3::ZERO, |corner| corner.0);
+        self.corners.iter().scan(last, |from, &(to, _)| {
+            let edge = [*from, to];
+            *from = to;
+            Some(edge)
+        })
+    }
+
     /// The first corner, the inward unit vector and the length of each edge.
     fn sides(&self) -> impl Iterator<Item = ([DVec3; 2], f64)> {
-        let count = self.corners.len();
-        (0..count).filter_map(move |i| {
-            let (from, to) = (self.corners[i].0, self.corners[(i + 1) % count].0);
+        self.edges().filter_map(|[from, to]| {
             let inward = self.side.normal.cross(to - from);
             let length = inward.length();
             (length > 0.0).then(|| ([from, inward / length], length))

@@ -28,10 +28,7 @@ impl Patch {
     /// The distance along the normal from a point to a piece, if the point is over the piece.
     pub(super) fn height_over(&self, shape: usize, p: DVec3) -> Option<f64> {
         match &self.pieces[shape] {
-            Piece::Flat(_) => {
-                let flat = self.flat(shape)?;
-                flat.covers(p).then(|| flat.height(p))
-            }
+            Piece::Flat(_) => self.flat(shape)?.height_if_over(p),
             Piece::Line(line) => {
                 let outward = self.outward(shape);
                 let height = line.exit(p, outward)?;
