@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::rim::Rim;
-use super::rolling::turns_about;
+use super::rolling::turns_about_y;
 use crate::stats::Cost;
 use crate::support::{ShapeId, ShapeKind, Support, VertexId};
 
@@ -44,7 +44,7 @@ impl Support for Cylinder {
 
     #[inline]
     fn rolls(&self, from: DVec3, to: DVec3) -> bool {
-        turns_about(DVec3::Y, from, to)
+        turns_about_y(from, to)
     }
 
     #[inline]

@@ -1,6 +1,6 @@
 //! Contacts on round surfaces stay below the body's axis while it rolls, and do not turn with it.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use crate::tuning::{ROLLING, SMALL_TURN};
 
@@ -17,8 +17,23 @@ pub(super) fn turns_about(axis: DVec3, from: DVec3, to: DVec3) -> bool {
         return turns(from, to);
     };
     let across = [from, to].map(|v| v.reject_from_normalized(axis));
-    let [a, b] = across.map(|v| v.length_squared());
-    let turn = axis.dot(across[0].cross(across[1]));
+    let squares = across.map(|v| v.length_squared());
+    turns_across(axis.dot(across[0].cross(across[1])), squares)
+}
+
+/// The same about the y axis.
+#[inline]
+pub(super) fn turns_about_y(from: DVec3, to: DVec3) -> bool {
+    let (from, to) = (DVec2::new(from.z, from.x), DVec2::new(to.z, to.x));
+    turns_across(
+        from.perp_dot(to),
+        [from.length_squared(), to.length_squared()],
+    )
+}
+
+/// Whether two vectors in a plane turn, from their cross product and their squares.
+#[inline]
+fn turns_across(turn: f64, [a, b]: [f64; 2]) -> bool {
     let least = SMALL_TURN * SMALL_TURN;
     a > least && b > least && turn * turn > ROLLING * ROLLING * a * b
 }

@@ -45,6 +45,13 @@ impl LastContacts {
         first_least(self.distances(normal).to_array())
     }
 
+    /// The least distance along a normal.
+    #[inline]
+    pub fn least(&self, normal: DVec3) -> f64 {
+        let distances = self.distances(normal).to_array();
+        distances[first_least(distances)]
+    }
+
     /// The points on both shapes, each in the frame of its shape.
     pub fn points(&self, pose: &RelativePose) -> [[DVec3; LANES]; 2] {
         let on_2 = pose.points_to_2(self.on_1 + self.between);

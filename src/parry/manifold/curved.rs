@@ -57,7 +57,7 @@ impl UpdateManifold<'_> {
             manifold.read_contacts(cso.pose, &mut last);
         }
         let mut cost = Cost::default();
-        let hint = manifold.hint(borders);
+        let hint = manifold.hint(last.as_ref(), borders);
         let mut query = CurvedQuery {
             cso,
             border_radii: pair.border_radii,
@@ -97,17 +97,18 @@ impl UpdateManifold<'_> {
 }
 
 impl KernelManifold<'_, '_> {
-    /// The memory of the pair. The cores may be apart although the shapes, with their `borders`, overlap.
-    fn hint(&self, borders: f64) -> Hint {
-        if let Some(least) = self.least_distance() {
-            return match self.normals() {
-                Some(normals) => Hint::Contact(normals, f64::from(least) + borders < 0.0),
-                None => Hint::None,
-            };
-        }
-        match self.memory(None) {
-            PairMemory::Axis(axis, ids) => Hint::Apart(axis, ids),
-            _ => Hint::None,
+    /// The memory of the pair, and its contacts. The cores may be apart although the shapes, with their `borders`,
+    /// overlap.
+    fn hint(&self, last: Option<&LastContacts>, borders: f64) -> Hint {
+        match (last, self.normals()) {
+            (Some(last), Some(normals)) => {
+                Hint::Contact(normals, last.least(normals[0]) + borders < 0.0)
+            }
+            (Some(_), None) => Hint::None,
+            (None, _) => match self.memory(None) {
+                PairMemory::Axis(axis, ids) => Hint::Apart(axis, ids),
+                _ => Hint::None,
+            },
         }
     }
 }

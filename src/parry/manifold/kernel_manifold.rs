@@ -161,12 +161,6 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
         self.normals().is_some_and(|before| cso.rolls(before, now))
     }
 
-    /// The distance of the deepest contact in the previous frame.
-    pub fn least_distance(&self) -> Option<f32> {
-        let points = self.manifold.points();
-        points.distance(points.deepest()?)
-    }
-
     /// Clears the memory of a pair whose bounding spheres are apart. To store an axis would cost a root and a
     /// division, which is more than it would save the next query.
     #[inline(always)]
