@@ -114,6 +114,10 @@ pub(crate) const USED_UP: f64 = 0.05;
 /// misses by more are tried later.
 pub(crate) const SMALL_TURN: f64 = 0.03;
 
+/// By more than this angle it hardly turns: 20 radians per second in steps of a sixtieth of a second. Pieces of surface
+/// within it are tried before a search, which costs ten times as much.
+pub(crate) const LARGE_TURN: f64 = 0.3;
+
 /// The longest step of Newton's method, as an angle: the slope says little about normals farther away.
 pub(crate) const LONGEST_STEP: f64 = 0.5;
 

@@ -10,6 +10,8 @@
 //! To add a convex shape, implement [`SurfacePieces`]: its support mapping and the pieces of its surface.
 
 mod at_rest;
+mod bends;
+mod by_pieces;
 mod certificate;
 mod circle;
 mod cone;

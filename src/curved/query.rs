@@ -5,17 +5,14 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 
 use super::patch::Patch;
-use super::rim_edge;
 use super::separation::NormalSeparation;
-use super::stationary;
 use super::surface_pieces::SurfacePieces;
 use crate::epa::EpaScratch;
 use crate::gjk::SeparatingAxis;
 use crate::query::{LastContacts, Start};
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, CsoVertex, VertexId};
-use crate::tolerance::DEPTH_GAP;
-use crate::tuning::{FLUSH_TIE, STILL, TILT};
+use crate::tuning::TILT;
 
 /// Memory that queries work in.
 #[derive(Clone, Debug, Default)]
@@ -40,6 +37,15 @@ pub enum Hint {
     Contact([DVec3; 2], bool),
 }
 
+impl Hint {
+    fn start(&self) -> Start {
+        match self {
+            Self::None => Start::Cold,
+            Self::Apart(..) | Self::Contact(..) => Start::Warm,
+        }
+    }
+}
+
 /// The answer to a query about cores, in frame 1.
 #[derive(Clone, Copy, Debug)]
 pub enum CurvedAnswer {
@@ -57,10 +63,6 @@ pub enum CurvedAnswer {
         on_1: DVec3,
     },
 }
-
-/// Finds a candidate for a better normal than the one at hand.
-type FindNormal<A, B> =
-    fn(&Cso<'_, A, B>, &NormalSeparation, &mut Cost) -> Option<NormalSeparation>;
 
 /// A query about two shapes, at least one of which is curved.
 pub struct CurvedQuery<'a, 'c, A, B> {
@@ -84,10 +86,7 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
         if self.cso.are_spheres_apart(self.max_distance) {
             return Some((CurvedAnswer::SpheresApart, Stage::BoundingSpheres));
         }
-        let start = match hint {
-            Hint::None => Start::Cold,
-            _ => Start::Warm,
-        };
+        let start = hint.start();
         if let Hint::Contact(normals, _) = hint
             && let Some(answer) = self.on_segment().or_else(|| self.at_rest(normals))
         {
@@ -105,7 +104,7 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
         {
             return Some((answer, Stage::Feature));
         }
-        let best = match self.stationary(&at) {
+        let best = match self.by_pieces(&at, matches!(hint, Hint::Contact(..))) {
             ControlFlow::Break(answer) => return Some((answer, Stage::Feature)),
             ControlFlow::Continue(best) => best,
         };
@@ -141,79 +140,6 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
         let aside = at.extreme.w - at.normal * at.normal.dot(at.extreme.w);
         let tilted = (at.normal - aside.normalize_or_zero() * TILT).normalize();
         NormalSeparation::along(self.cso, tilted, &at.extreme, self.cost)
-    }
-
-    /// The answer, if the pieces of surface near a normal give it; otherwise the best normal found.
-    pub(super) fn stationary(
-        &mut self,
-        at: &NormalSeparation,
-    ) -> ControlFlow<CurvedAnswer, NormalSeparation> {
-        let mut best = *at;
-        let steps: [FindNormal<A, B>; 5] = [
-            stationary::near_flat,
-            stationary::ruled,
-            stationary::along_rulings,
-            stationary::smooth,
-            stationary::flat,
-        ];
-        for step in steps {
-            let Some(found) = step(self.cso, at, self.cost) else {
-                continue;
-            };
-            if found.distance > self.max_distance {
-                return ControlFlow::Break(apart(&found));
-            }
-            // A normal that is worse than the best one cannot be proved.
-            if found.distance < best.distance - self.tolerance() {
-                continue;
-            }
-            best = found;
-            if let Some(answer) = self.prove(&found) {
-                return ControlFlow::Break(answer);
-            }
-        }
-        ControlFlow::Continue(best)
-    }
-
-    pub(super) fn tolerance(&self) -> f64 {
-        DEPTH_GAP * self.cso.min_radius()
-    }
-
-    /// The answer along a normal, if the extreme points or the patch prove it.
-    fn prove(&mut self, found: &NormalSeparation) -> Option<CurvedAnswer> {
-        let near = |on_1| CurvedAnswer::Near {
-            signed_distance: found.distance,
-            normal: found.normal,
-            on_1,
-        };
-        let tolerance = self.tolerance();
-        let moved = found.normal * self.border_radii[0];
-        let patch = &mut self.scratch.patch;
-        patch.aim(found.normal, &found.extreme);
-        if found.distance > 0.0 && found.extreme.w.length() <= found.distance + tolerance {
-            return Some(near(found.extreme.on_1 + moved));
-        }
-        patch.find_cores(self.cso);
-        let drift = STILL * self.cso.min_radius();
-        if let Some(last) = self
-            .last
-            .filter(|last| last.are_within(found.normal, drift))
-        {
-            patch.add_guess(last.middle_of_deepest(found.normal, FLUSH_TIE * tolerance));
-            if let Some(place) = patch.proved(self.cso, found.distance, tolerance) {
-                return Some(near(place.on_1 + moved));
-            }
-        }
-        patch.find_extremes();
-        if let Some(place) = patch.proved(self.cso, found.distance, tolerance) {
-            return Some(near(place.on_1 + moved));
-        }
-        if let Some(on_1) = rim_edge::proved_crossing(self.cso, found, tolerance) {
-            return Some(near(on_1 + moved));
-        }
-        patch.complete(self.cso, self.border_radii);
-        let deepest = patch.proved(self.cso, found.distance, tolerance)?;
-        Some(near(deepest.on_1))
     }
 }
 

@@ -1,7 +1,8 @@
-//! The proof of a depth where a rim crosses a straight edge.
+//! The proof of a depth where a rim crosses a straight edge, or a line of a ruled side.
 
 use glam::DVec3;
 
+use super::piece::Piece;
 use super::separation::NormalSeparation;
 use super::surface_pieces::{CircularEdge, SurfacePieces};
 use crate::support::{Cso, VertexId};
@@ -11,7 +12,9 @@ use crate::tolerance::SAME_NORMAL;
 /// has a smaller depth than the normal at hand, up to `tolerance`.
 ///
 /// The disc within the rim, swept along the edge, lies in the difference. It is an elliptic cylinder with
-/// slanted ends. The depth is proved if this cylinder contains the ball with the depth as radius.
+/// slanted ends. The depth is proved if this cylinder contains the ball with the depth as radius. Balls inside the other
+/// shape that touch a line of a ruled side have their centres on a segment: it takes the place of the edge, and the
+/// radius of the balls is taken off the depth.
 pub(super) fn proved_crossing<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
@@ -22,17 +25,20 @@ pub(super) fn proved_crossing<A: SurfacePieces, B: SurfacePieces>(
     }
     let [on_1, on_2] = [at.extreme.on_1, at.extreme.on_2()];
     let [id_1, id_2] = at.extreme.ids;
-    let (sweep, on_1) = match Sweep::of_first_rim(cso, at.normal, on_1, id_2) {
-        Some(sweep) => (sweep, on_1),
-        None => {
-            let inverse = cso.pose.inverse();
-            let reversed = cso.reversed(&inverse);
-            let outward_2 = -cso.pose.direction_to_2(at.normal);
-            let sweep = Sweep::of_first_rim(&reversed, outward_2, cso.pose.point_to_2(on_2), id_1)?;
-            (sweep, on_2 - at.normal * at.distance)
-        }
-    };
-    sweep.contains_ball(-at.distance, tolerance).then_some(on_1)
+    let depth = -at.distance;
+    if let Some(sweep) = Sweep::of_first_rim(cso, at.normal, (on_1, id_2), depth)
+        && sweep.proves(depth, tolerance)
+    {
+        return Some(on_1);
+    }
+    let inverse = cso.pose.inverse();
+    let reversed = cso.reversed(&inverse);
+    let outward_2 = -cso.pose.direction_to_2(at.normal);
+    let on_rim = cso.pose.point_to_2(on_2);
+    let sweep = Sweep::of_first_rim(&reversed, outward_2, (on_rim, id_1), depth)?;
+    sweep
+        .proves(depth, tolerance)
+        .then(|| on_2 + at.normal * depth)
 }
 
 /// A disc minus an edge, in frame 1.
@@ -41,6 +47,8 @@ struct Sweep {
     /// The extreme point of the rim.
     on_rim: DVec3,
     edge: [DVec3; 2],
+    /// The radius of the balls around the points of the edge.
+    ball: f64,
     /// Outwards from the disc.
     normal: DVec3,
 }
@@ -51,18 +59,26 @@ impl Sweep {
     fn of_first_rim<A: SurfacePieces, B: SurfacePieces>(
         cso: &Cso<'_, A, B>,
         normal: DVec3,
-        on_rim: DVec3,
-        vertex_2: VertexId,
+        (on_rim, vertex_2): (DVec3, VertexId),
+        depth: f64,
     ) -> Option<Self> {
         let rim = cso.shape_1.rim(normal)?;
         let outward_2 = -cso.pose.direction_to_2(normal);
-        let edge = cso.shape_2.edge(outward_2, vertex_2)?;
+        let (edge, ball) = match cso.shape_2.edge(outward_2, vertex_2) {
+            Some(edge) => (edge, 0.0),
+            None => centers(cso.shape_2, outward_2, cso.pose.point_to_2(on_rim), depth)?,
+        };
         Some(Self {
             rim,
             on_rim,
             edge: edge.map(|p| cso.pose.point_to_1(p)),
+            ball,
             normal,
         })
+    }
+
+    fn proves(&self, depth: f64, tolerance: f64) -> bool {
+        self.contains_ball(depth - self.ball, tolerance)
     }
 
     fn contains_ball(&self, depth: f64, tolerance: f64) -> bool {
@@ -91,4 +107,31 @@ impl Sweep {
         let aside = self.normal.cross(along).dot(self.on_rim - from);
         most - (most - depth).hypot(aside) >= depth - tolerance
     }
+}
+
+/// The centres of the largest balls inside a shape that touch the line of its ruled side with the normal `outward` beside
+/// a point, and their radius, `most` at most.
+fn centers(
+    shape: &impl SurfacePieces,
+    outward: DVec3,
+    beside: DVec3,
+    most: f64,
+) -> Option<([DVec3; 2], f64)> {
+    let piece = shape.piece(outward, VertexId::default(), 0.0, &mut Vec::new());
+    let Piece::Line(line) = piece else {
+        return None;
+    };
+    if (outward.dot(line.surface.axis) - line.surface.sine()).abs() > SAME_NORMAL {
+        return None;
+    }
+    let [from, to] = line.ends;
+    let along = to - from;
+    let share = along.dot(beside - from) / along.length_squared();
+    let radius = line.ball.radius(share.clamp(0.0, 1.0)).min(most);
+    let [first, last] = line.ball.growth.map(|growth| radius / growth);
+    let inwards = outward * -radius;
+    Some((
+        [from + along * first, to - along * last].map(|p| p + inwards),
+        radius,
+    ))
 }

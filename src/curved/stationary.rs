@@ -10,7 +10,7 @@ use super::surface_pieces::{Ruling, SurfacePieces};
 use crate::stats::Cost;
 use crate::support::Cso;
 use crate::tolerance::{PARALLEL_AXES, SETTLED_ANGLE};
-use crate::tuning::{LONGEST_STEP, MAX_NEWTON_STEPS, SMALL_TURN};
+use crate::tuning::{LARGE_TURN, LONGEST_STEP, MAX_NEWTON_STEPS, SMALL_TURN};
 
 /// Of the flat sides whose normal is close to the one at hand, the normal with the greatest separation.
 pub(super) fn near_flat<A: SurfacePieces, B: SurfacePieces>(
@@ -48,21 +48,40 @@ fn flat_within<A: SurfacePieces, B: SurfacePieces>(
         .reduce(NormalSeparation::or)
 }
 
-/// Whether an edge or a ruled side has normals close to `about`.
-fn is_near(ruling: &Ruling, about: DVec3) -> bool {
-    (ruling.axis.dot(about) - ruling.sine).abs() < SMALL_TURN
+/// Whether an edge or a ruled side has normals within a small angle of `about`.
+fn is_within(ruling: &Ruling, turn: f64, about: DVec3) -> bool {
+    (ruling.axis.dot(about) - ruling.sine).abs() < turn
 }
 
-/// The normal with the greatest separation that satisfies two rulings, one of each shape.
+/// The normal with the greatest separation that satisfies two rulings, one of each shape. Both have normals close to the
+/// one at hand.
 pub(super) fn ruled<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
     cost: &mut Cost,
 ) -> Option<NormalSeparation> {
+    ruled_within(cso, at, SMALL_TURN, cost)
+}
+
+/// The same of rulings that are farther away.
+pub(super) fn far_ruled<A: SurfacePieces, B: SurfacePieces>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+    cost: &mut Cost,
+) -> Option<NormalSeparation> {
+    ruled_within(cso, at, LARGE_TURN, cost)
+}
+
+fn ruled_within<A: SurfacePieces, B: SurfacePieces>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+    turn: f64,
+    cost: &mut Cost,
+) -> Option<NormalSeparation> {
     let mut best: Option<NormalSeparation> = None;
     let of_first = cso.shape_1.rulings(at.normal, at.extreme.ids[0]);
-    for first in of_first.filter(|ruling| is_near(ruling, at.normal)) {
-        for second in rulings_2(cso, at).filter(|ruling| is_near(ruling, at.normal)) {
+    for first in of_first.filter(|ruling| is_within(ruling, turn, at.normal)) {
+        for second in rulings_2(cso, at).filter(|ruling| is_within(ruling, turn, at.normal)) {
             if let Some(normal) = satisfying_both(&first, &second, at.normal) {
                 let found = NormalSeparation::along(cso, normal, &at.extreme, cost);
                 best = Some(best.map_or(found, |best| best.or(found)));
@@ -103,16 +122,34 @@ fn satisfying_both(first: &Ruling, second: &Ruling, about: DVec3) -> Option<DVec
     })
 }
 
-/// The normal with the greatest separation that satisfies one ruling.
+/// The normal with the greatest separation that satisfies one ruling, which has normals close to the one at hand.
 pub(super) fn along_rulings<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
     cost: &mut Cost,
 ) -> Option<NormalSeparation> {
+    along_rulings_within(cso, at, SMALL_TURN, cost)
+}
+
+/// The same of rulings that are farther away.
+pub(super) fn along_far_rulings<A: SurfacePieces, B: SurfacePieces>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+    cost: &mut Cost,
+) -> Option<NormalSeparation> {
+    along_rulings_within(cso, at, LARGE_TURN, cost)
+}
+
+fn along_rulings_within<A: SurfacePieces, B: SurfacePieces>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+    turn: f64,
+    cost: &mut Cost,
+) -> Option<NormalSeparation> {
     let mut best: Option<NormalSeparation> = None;
     let of_first = cso.shape_1.rulings(at.normal, at.extreme.ids[0]);
     let rulings = of_first.chain(rulings_2(cso, at));
-    for ruling in rulings.filter(|ruling| is_near(ruling, at.normal)) {
+    for ruling in rulings.filter(|ruling| is_within(ruling, turn, at.normal)) {
         if let Some(found) = along_ruling(cso, &ruling, (at.normal, &at.extreme), cost) {
             best = Some(best.map_or(found, |best| best.or(found)));
         }

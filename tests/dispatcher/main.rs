@@ -19,6 +19,7 @@ mod curved_at_rest;
 mod curved_pairs;
 mod curved_patches;
 mod curved_queries;
+mod curved_searches;
 mod exact_cases;
 mod fallback;
 mod families;
