@@ -150,30 +150,30 @@ impl<'s> SurfacePair<'s> {
     ) -> bool {
         let count = clipper.corners.count;
         let frame = ContactFrame::new(proximity.on_1, proximity.normal);
-        self.widen_side(0, &frame, cso.shape_1, clipper);
-        self.widen_side(1, &frame.in_frame_2(cso.pose), cso.shape_2, clipper);
+        self.widen_surface(0, &frame, cso.shape_1, clipper);
+        self.widen_surface(1, &frame.in_frame_2(cso.pose), cso.shape_2, clipper);
         clipper.corners.count > count
     }
 
     /// Widens the surface of one shape. A cluster already has all its corners.
-    fn widen_side(
+    fn widen_surface(
         &mut self,
-        side: usize,
+        index: usize,
         frame: &ContactFrame,
         shape: &impl Polytope,
         clipper: &mut Clipper,
     ) {
-        let surface = &mut self.surfaces[side];
+        let surface = &mut self.surfaces[index];
         let face = surface.plane.face;
         if surface.polygon != face {
             return;
         }
         beside::add_planes(frame, shape, face, surface.sign, surface.more);
-        for vertex in beside::corners(shape, face, self.surfaces[side].more) {
+        for vertex in beside::corners(shape, face, self.surfaces[index].more) {
             let point = shape.vertex(vertex).as_vec3();
-            let [x, y] = self.projections[side].flatten([point; LANES]);
+            let [x, y] = self.projections[index].flatten([point; LANES]);
             if self.distances(x, y).as_array()[0] < 0.0 {
-                clipper.add_beside(side, vertex, [x, y]);
+                clipper.add_beside(index, vertex, [x, y]);
             }
         }
     }
@@ -228,9 +228,9 @@ impl<'s> SurfacePair<'s> {
         clipper: &Clipper,
         corner: usize,
     ) -> [Feature; 2] {
-        let face = |side: usize| {
+        let face = |index: usize| {
             let at = clipper.corners.at(corner);
-            Feature::Face(self.surfaces[side].face_at(at))
+            Feature::Face(self.surfaces[index].face_at(at))
         };
         match clipper.origin(corner) {
             VertexOrigin::Subject(i) => [face(0), Feature::Vertex(subject.vertex(i.into()))],

@@ -138,11 +138,11 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
             normals,
             least: None,
         };
-        for side in [0, 1] {
-            let part = self.constraints[side].part();
-            if part.is_some_and(|part| part.is_cut(corrected.normals[side])) {
-                let out = self.way_out(side, f64::INFINITY)?;
-                if !self.leads_through(side, &out) {
+        for shape in [0, 1] {
+            let part = self.constraints[shape].part();
+            if part.is_some_and(|part| part.is_cut(corrected.normals[shape])) {
+                let out = self.way_out(shape, f64::INFINITY)?;
+                if !self.leads_through(shape, &out) {
                     corrected = out;
                 }
             }
@@ -188,11 +188,11 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
     ) -> Option<([Vec3; 2], Contacts)> {
         let mut beyond = f64::INFINITY;
         while chosen.1.len > 0
-            && let Some(side) = self.covered_side(&chosen.1, chosen.0)
+            && let Some(shape) = self.covered_shape(&chosen.1, chosen.0)
         {
-            let out = self.way_out(side, beyond)?;
+            let out = self.way_out(shape, beyond)?;
             beyond = out.least?;
-            if self.leads_through(side, &out) {
+            if self.leads_through(shape, &out) {
                 break;
             }
             chosen = along(&out)?;
@@ -202,10 +202,10 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
 
     /// Whether a way out of a part leads through the whole part: it is longer than the part is thick, and the other
     /// shape's centre is beneath that of the part.
-    fn leads_through(&self, side: usize, out: &Corrected) -> bool {
+    fn leads_through(&self, shape: usize, out: &Corrected) -> bool {
         let Self { cso, order, .. } = self;
-        let along = out.normals[side].as_dvec3();
-        let [width, rise] = if order.to_caller([0, 1])[side] == 0 {
+        let along = out.normals[shape].as_dvec3();
+        let [width, rise] = if order.to_caller([0, 1])[shape] == 0 {
             let other = cso.pose.point_to_1(cso.shape_2.center());
             measure(cso.shape_1, other, along)
         } else {
@@ -226,11 +226,11 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
 
     /// Of the outer normals of a part, the one along which the shapes overlap least, if they are nearer along
     /// it than `beyond`.
-    fn way_out(&self, side: usize, beyond: f64) -> Option<Corrected> {
+    fn way_out(&self, shape: usize, beyond: f64) -> Option<Corrected> {
         let rotation = self.pos12.rotation;
-        let outer = self.constraints[side].part()?.outer_normals();
+        let outer = self.constraints[shape].part()?.outer_normals();
         let ways = outer.map(|normal| {
-            let normals = if side == 0 {
+            let normals = if shape == 0 {
                 [normal, rotation.inverse() * -normal]
             } else {
                 [rotation * -normal, normal]
@@ -251,9 +251,9 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
         })
     }
 
-    /// The side of a part whose contacts other parts cover, if there is one. Contacts and normals are in the
-    /// kernels' order.
-    fn covered_side(&self, contacts: &Contacts, [n1, n2]: [Vec3; 2]) -> Option<usize> {
+    /// Which shape's contacts other parts cover, in the caller's order, if those of one are covered. Contacts and
+    /// normals are in the kernels' order.
+    fn covered_shape(&self, contacts: &Contacts, [n1, n2]: [Vec3; 2]) -> Option<usize> {
         let [c1, c2] = self.order.to_kernel(self.constraints);
         let on_1 = contacts.iter().map(|contact| contact.on_1);
         let on_2 = contacts.iter().map(|contact| contact.on_2);

@@ -129,10 +129,10 @@ impl Still {
             return false;
         };
         let points = points();
-        let on = |side: usize| ContactsOnShape {
-            points: &points[side],
-            normal: normals[side],
-            border_radius: border_radii[side],
+        let on = |shape: usize| ContactsOnShape {
+            points: &points[shape],
+            normal: normals[shape],
+            border_radius: border_radii[shape],
             radius: self.pair.radius,
         };
         depths([on(0), on(1)]).is_some_and(|depths| some_is_on_both(depths, self.pair.radius))
