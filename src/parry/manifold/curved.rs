@@ -6,7 +6,7 @@ use parry3d::query::Unsupported;
 
 use super::kernel_manifold::{AxisFrame, KernelManifold};
 use super::normals::Normals;
-use super::still::Still;
+use super::still::{PresentContacts, Still};
 use super::update::UpdateManifold;
 use crate::curved::{self, CurvedAnswer, CurvedQuery, Hint, Patch, SurfacePieces};
 use crate::manifold::Contacts;
@@ -31,14 +31,13 @@ impl UpdateManifold<'_> {
         let cso = pair.cso(&pose);
         let borders = pair.border_radii[0] + pair.border_radii[1];
         let max_distance = f64::from(self.prediction) + pair.touching(cso.size());
-        let (mut last, mut still) = (None, None);
-        let contacts = (&mut last, &mut still);
+        let mut present = PresentContacts::default();
         let still_pair = |rotation, key| StillPair::of(&cso, rotation, key);
-        let reach = (&pose, max_distance + borders);
-        if self.hold_if_proved(pair, reach, contacts, &workspace.still_cache, still_pair) {
+        let at = (&pose, max_distance + borders);
+        if self.hold_if_proved(pair, at, &mut present, &workspace.still_cache, still_pair) {
             return Ok(());
         }
-        self.query_curved(pair, &cso, max_distance, (last, still.as_ref()), workspace)
+        self.query_curved(pair, &cso, max_distance, present, workspace)
     }
 
     /// Up to a maximum distance of the shapes with their borders.
@@ -47,22 +46,23 @@ impl UpdateManifold<'_> {
         pair: &Pair<'_, B, A>,
         cso: &Cso<'_, A, B>,
         max_distance: f64,
-        (mut last, still): (Option<LastContacts>, Option<&Still>),
+        mut present: PresentContacts,
         workspace: &mut Workspace,
     ) -> Result<(), Unsupported> {
         let borders = pair.border_radii[0] + pair.border_radii[1];
         let frame = AxisFrame::of(cso);
         let mut manifold = KernelManifold::with_borders(&mut self.manifold, pair.order, frame);
-        if last.is_none() {
-            manifold.read_contacts(cso.pose, &mut last);
+        if present.last.is_none() {
+            manifold.read_contacts(cso.pose, &mut present.last);
         }
         let mut cost = Cost::default();
-        let hint = manifold.hint(last.as_ref(), borders);
+        let last = present.last.as_ref();
+        let hint = manifold.hint(last, borders);
         let mut query = CurvedQuery {
             cso,
             border_radii: pair.border_radii,
             max_distance: max_distance + borders,
-            last: last.as_ref(),
+            last,
             scratch: &mut workspace.curved,
             cost: &mut cost,
         };
@@ -82,9 +82,10 @@ impl UpdateManifold<'_> {
                     normal,
                     on_1,
                     max_distance,
-                    last: last.as_ref(),
+                    last,
                 };
                 let constraints = (self.constraints, self.pos12);
+                let still = present.still.as_ref();
                 let is_kept = near.update_contacts(constraints, &mut manifold, still, workspace);
                 if is_kept && stage == Stage::Feature {
                     stage = Stage::Kept;

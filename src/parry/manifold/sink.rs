@@ -3,7 +3,7 @@
 use super::erased::ErasedManifold;
 use super::kernel_manifold::{AxisFrame, KernelManifold};
 use super::polytopes::PolytopeContacts;
-use super::still::Still;
+use super::still::{PresentContacts, Still};
 use crate::gjk::SeparatingAxis;
 use crate::parry::pair::Pair;
 use crate::parry::still_cache::StillCache;
@@ -32,23 +32,22 @@ pub(super) struct ManifoldSink<'a, 'm, B> {
 }
 
 impl<'a, 'm, B: Polytope> ManifoldSink<'a, 'm, B> {
-    /// A sink for a manifold. `still` are its contacts, if they may stay as they are.
+    /// A sink for a manifold. `present` are its contacts, as far as they are read.
     #[inline(always)]
     pub fn new(
         manifold: &'a mut ErasedManifold<'m>,
         pair: &'a Pair<'a, B>,
         frame: AxisFrame<'a>,
         contacts: PolytopeContacts<'a, B>,
-        last: &'a mut Option<LastContacts>,
-        still: Option<&'a Still>,
+        present: &'a mut PresentContacts,
     ) -> Self {
         Self {
             manifold,
             pair,
             frame,
             contacts,
-            last,
-            still,
+            last: &mut present.last,
+            still: present.still.as_ref(),
             is_kept: false,
             is_chosen: false,
             held_at: None,

@@ -21,6 +21,15 @@ use crate::simd::LANES;
 use crate::support::{Cso, ShapeId, Support};
 use crate::tolerance::{DEPTH_ERROR, KEPT_DRIFT, STILL_DEPTH, STILL_TILT};
 
+/// The contacts of a manifold at the present pose.
+#[derive(Default)]
+pub(super) struct PresentContacts {
+    /// Once they are read.
+    pub last: Option<LastContacts>,
+    /// If they may stay as they are.
+    pub still: Option<Still>,
+}
+
 /// Contacts of a pair at rest, measured along the stored normal at the present pose.
 pub(super) struct Still {
     distances: [f64; LANES],
@@ -32,24 +41,23 @@ pub(super) struct Still {
     tag: u64,
 }
 
-impl Still {
-    /// Reads the contacts into `last`, and measures them in `still` unless they have left their places.
+impl PresentContacts {
+    /// Reads the contacts, and measures them unless they have left their places.
     // perf: inlined, it costs pairs that move 2 % more instructions. Returning the answers would copy them.
     #[inline(never)]
     pub fn read(
+        &mut self,
         manifold: &KernelManifold<'_, '_>,
         pose: &RelativePose,
         pair: StillPair,
-        last: &mut Option<LastContacts>,
-        still: &mut Option<Self>,
     ) {
-        manifold.read_contacts(pose, last);
-        if let (Some(last), Some([normal, _])) = (last, manifold.normals())
+        manifold.read_contacts(pose, &mut self.last);
+        if let (Some(last), Some([normal, _])) = (&self.last, manifold.normals())
             && last.are_within(normal, KEPT_DRIFT * pair.radius)
         {
             let distances = last.distances(normal).to_array();
             let least = distances[first_least(distances)];
-            *still = Some(Self {
+            self.still = Some(Still {
                 distances,
                 least,
                 pair,
@@ -58,7 +66,9 @@ impl Still {
             });
         }
     }
+}
 
+impl Still {
     /// Whether an earlier certificate proves that a query up to a maximum distance would leave the contacts as they
     /// are.
     #[inline]

@@ -9,7 +9,7 @@ use super::half_space::HalfSpaceUpdate;
 use super::kernel_manifold::{AxisFrame, KernelManifold};
 use super::polytopes::PolytopeContacts;
 use super::sink::ManifoldSink;
-use super::still::{Still, is_settled};
+use super::still::{PresentContacts, is_settled};
 use crate::curved::SurfacePieces;
 use crate::hull::Hull;
 use crate::parry::apart_cache::ApartPair;
@@ -20,7 +20,7 @@ use crate::parry::pair::{Pair, PairVisitor, valid_pose};
 use crate::parry::still_cache::{StillCache, StillPair};
 use crate::parry::workspace::Workspace;
 use crate::pose::RelativePose;
-use crate::query::{Full, LastContacts, Query};
+use crate::query::{Full, Query};
 use crate::stats::{Cost, SharedStats, Stage};
 use crate::support::{Cso, Polytope, Support};
 
@@ -53,22 +53,14 @@ impl PairVisitor for UpdateManifold<'_> {
         }
         let pose = pair.pose(valid_pose(self.pos12)?);
         let cso = pair.cso(&pose);
-        let (mut last, mut still) = (None, None);
-        let contacts = (&mut last, &mut still);
+        let mut present = PresentContacts::default();
         let still_pair = |rotation, key| StillPair::of(&cso, rotation, key);
-        let reach = (&pose, max_distance);
-        if self.hold_if_proved(pair, reach, contacts, &workspace.still_cache, still_pair) {
+        let at = (&pose, max_distance);
+        if self.hold_if_proved(pair, at, &mut present, &workspace.still_cache, still_pair) {
             return Ok(());
         }
         let mut cost = Cost::default();
-        let stage = self.query(
-            pair,
-            &cso,
-            max_distance,
-            (&mut last, still.as_ref()),
-            workspace,
-            &mut cost,
-        )?;
+        let stage = self.query(pair, &cso, max_distance, &mut present, workspace, &mut cost)?;
         self.stats.record(stage, &cost);
         Ok(())
     }
@@ -80,11 +72,10 @@ impl PairVisitor for UpdateManifold<'_> {
     ) -> Result<(), Unsupported> {
         let pose = pair.pose(valid_pose(self.pos12)?);
         let max_distance = pair.core_distance(self.prediction, pair.hull.radius());
-        let (mut last, mut still) = (None, None);
-        let contacts = (&mut last, &mut still);
+        let mut present = PresentContacts::default();
         let still_pair = |rotation, key| plane::still_pair(pair, &pose, rotation, key);
-        let reach = (&pose, max_distance);
-        if self.hold_if_proved(pair, reach, contacts, &workspace.still_cache, still_pair) {
+        let at = (&pose, max_distance);
+        if self.hold_if_proved(pair, at, &mut present, &workspace.still_cache, still_pair) {
             return Ok(());
         }
         let mut update = HalfSpaceUpdate {
@@ -92,8 +83,8 @@ impl PairVisitor for UpdateManifold<'_> {
             pose: &pose,
             max_distance,
             manifold: KernelManifold::new(&mut self.manifold, pair, AxisFrame::First),
-            still: still.as_ref(),
-            last: &mut last,
+            still: present.still.as_ref(),
+            last: &mut present.last,
         };
         let mut cost = Cost::default();
         let Workspace {
@@ -116,14 +107,14 @@ impl PairVisitor for UpdateManifold<'_> {
 impl<'a> UpdateManifold<'a> {
     /// Only measures the contacts of a pair at rest anew, if that is proved to be enough. Returns whether it is.
     ///
-    /// If contacts may stay as they are, it reads them into `last`, and into `still` unless they left their places. Return
-    /// values would be copied even where there are none.
+    /// If contacts may stay as they are, it reads them into `present`: a return value would be copied even where there are
+    /// none.
     #[inline]
     pub(super) fn hold_if_proved<B, A>(
         &mut self,
         pair: &Pair<'_, B, A>,
         (pose, max_distance): (&RelativePose, f64),
-        (last, still): (&mut Option<LastContacts>, &mut Option<Still>),
+        present: &mut PresentContacts,
         still_cache: &StillCache,
         still_pair: impl FnOnce(Quat, u64) -> Option<StillPair>,
     ) -> bool {
@@ -133,9 +124,9 @@ impl<'a> UpdateManifold<'a> {
             && let Some(still_pair) = still_pair(self.pos12.rotation, self.manifold.key())
         {
             let manifold = KernelManifold::new(&mut self.manifold, pair, AxisFrame::First);
-            Still::read(&manifold, pose, still_pair, last, still);
+            present.read(&manifold, pose, still_pair);
         }
-        let Some(still) = still else {
+        let Some(still) = &mut present.still else {
             return false;
         };
         let is_proved = still.is_proved(still_cache, max_distance, pair.border_radii);
@@ -155,7 +146,7 @@ impl<'a> UpdateManifold<'a> {
         pair: &Pair<'_, B>,
         cso: &Cso<'_, Hull, B>,
         max_distance: f64,
-        (last, still): (&mut Option<LastContacts>, Option<&Still>),
+        present: &mut PresentContacts,
         workspace: &mut Workspace,
         cost: &mut Cost,
     ) -> Result<Stage, Unsupported> {
@@ -174,7 +165,7 @@ impl<'a> UpdateManifold<'a> {
             pos12: self.pos12,
             scratch: &mut workspace.clip,
         };
-        let mut sink = ManifoldSink::new(&mut self.manifold, pair, frame, contacts, last, still);
+        let mut sink = ManifoldSink::new(&mut self.manifold, pair, frame, contacts, present);
         let stage = query.run_into(Full, &mut sink).ok_or(Unsupported)?;
         let (apart_by, stage) = (sink.still_apart(stage, cso), sink.stage(stage));
         sink.note(&mut workspace.still_cache);
