@@ -2,6 +2,8 @@
 
 use std::ops::ControlFlow;
 
+use glam::DVec3;
+
 use super::bends;
 use super::query::{CurvedAnswer, CurvedQuery, apart};
 use super::rim_edge;
@@ -107,34 +109,42 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
         };
         let tolerance = self.tolerance();
         let moved = found.normal * self.border_radii[0];
-        let patch = &mut self.scratch.patch;
-        patch.aim(found.normal, &found.extreme);
-        if found.distance > 0.0 && found.extreme.w.length() <= found.distance + tolerance {
-            return Some(near(found.extreme.on_1 + moved));
-        }
-        if bends::prove_depth(self.cso, found, tolerance) {
-            return Some(near(found.extreme.on_1 + moved));
-        }
-        patch.find_cores(self.cso);
-        let drift = STILL * self.cso.min_radius();
-        if let Some(last) = self
-            .last
-            .filter(|last| last.are_within(found.normal, drift))
+        self.scratch.patch.aim(found.normal, &found.extreme);
+        let is_distance = found.distance > 0.0;
+        if is_distance && found.extreme.w.length() <= found.distance + tolerance
+            || bends::prove_depth(self.cso, found, tolerance)
         {
+            return Some(near(found.extreme.on_1 + moved));
+        }
+        if let Some(on_1) = self.prove_by_patch(found) {
+            return Some(near(on_1 + moved));
+        }
+        let patch = &mut self.scratch.patch;
+        patch.complete(self.cso, self.border_radii);
+        if let Some(deepest) = patch.proved(self.cso, found.distance, tolerance) {
+            return Some(near(deepest.on_1));
+        }
+        let on_1 = rim_edge::proved_under_line(self.cso, found, tolerance)?;
+        Some(near(on_1 + moved))
+    }
+
+    /// The point of core 1 where a few places of the patch, or a rim that crosses an edge, prove a normal.
+    fn prove_by_patch(&mut self, found: &NormalSeparation) -> Option<DVec3> {
+        let (cso, tolerance) = (self.cso, self.tolerance());
+        let patch = &mut self.scratch.patch;
+        patch.find_cores(cso);
+        let drift = STILL * cso.min_radius();
+        let last = self.last;
+        if let Some(last) = last.filter(|last| last.are_within(found.normal, drift)) {
             patch.add_guess(last.middle_of_deepest(found.normal, FLUSH_TIE * tolerance));
-            if let Some(place) = patch.proved(self.cso, found.distance, tolerance) {
-                return Some(near(place.on_1 + moved));
+            if let Some(place) = patch.proved(cso, found.distance, tolerance) {
+                return Some(place.on_1);
             }
         }
         patch.find_extremes();
-        if let Some(place) = patch.proved(self.cso, found.distance, tolerance) {
-            return Some(near(place.on_1 + moved));
+        match patch.proved(cso, found.distance, tolerance) {
+            Some(place) => Some(place.on_1),
+            None => rim_edge::proved_crossing(cso, found, tolerance),
         }
-        if let Some(on_1) = rim_edge::proved_crossing(self.cso, found, tolerance) {
-            return Some(near(on_1 + moved));
-        }
-        patch.complete(self.cso, self.border_radii);
-        let deepest = patch.proved(self.cso, found.distance, tolerance)?;
-        Some(near(deepest.on_1))
     }
 }

@@ -12,13 +12,37 @@ use crate::tolerance::SAME_NORMAL;
 /// has a smaller depth than the normal at hand, up to `tolerance`.
 ///
 /// The disc within the rim, swept along the edge, lies in the difference. It is an elliptic cylinder with
-/// slanted ends. The depth is proved if this cylinder contains the ball with the depth as radius. Balls inside the other
-/// shape that touch a line of a ruled side have their centres on a segment: it takes the place of the edge, and the
-/// radius of the balls is taken off the depth.
+/// slanted ends. The depth is proved if this cylinder contains the ball with the depth as radius.
 pub(super) fn proved_crossing<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
     tolerance: f64,
+) -> Option<DVec3> {
+    proved_by(cso, at, tolerance, Partner::Edge)
+}
+
+/// The same of a rim and a line of a ruled side. Balls inside the other shape that touch the line have their centres on a
+/// segment: it takes the place of the edge, and the radius of the balls is taken off the depth.
+pub(super) fn proved_under_line<A: SurfacePieces, B: SurfacePieces>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+    tolerance: f64,
+) -> Option<DVec3> {
+    proved_by(cso, at, tolerance, Partner::Line)
+}
+
+/// What a rim crosses.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Partner {
+    Edge,
+    Line,
+}
+
+fn proved_by<A: SurfacePieces, B: SurfacePieces>(
+    cso: &Cso<'_, A, B>,
+    at: &NormalSeparation,
+    tolerance: f64,
+    partner: Partner,
 ) -> Option<DVec3> {
     if at.distance >= 0.0 {
         return None;
@@ -26,16 +50,15 @@ pub(super) fn proved_crossing<A: SurfacePieces, B: SurfacePieces>(
     let [on_1, on_2] = [at.extreme.on_1, at.extreme.on_2()];
     let [id_1, id_2] = at.extreme.ids;
     let depth = -at.distance;
-    if let Some(sweep) = Sweep::of_first_rim(cso, at.normal, (on_1, id_2), depth)
-        && sweep.proves(depth, tolerance)
-    {
+    let sweep = Sweep::of_first_rim(cso, partner, at.normal, (on_1, id_2), depth);
+    if sweep.is_some_and(|sweep| sweep.proves(depth, tolerance)) {
         return Some(on_1);
     }
     let inverse = cso.pose.inverse();
     let reversed = cso.reversed(&inverse);
     let outward_2 = -cso.pose.direction_to_2(at.normal);
     let on_rim = cso.pose.point_to_2(on_2);
-    let sweep = Sweep::of_first_rim(&reversed, outward_2, (on_rim, id_1), depth)?;
+    let sweep = Sweep::of_first_rim(&reversed, partner, outward_2, (on_rim, id_1), depth)?;
     sweep
         .proves(depth, tolerance)
         .then(|| on_2 + at.normal * depth)
@@ -54,19 +77,20 @@ struct Sweep {
 }
 
 impl Sweep {
-    /// The rim of the first shape and the edge of the second one that are extreme along a normal: at the point
+    /// The rim of the first shape, and of the second one the edge or line that is extreme along a normal: at the point
     /// `on_rim`, and at the vertex `vertex_2`.
     fn of_first_rim<A: SurfacePieces, B: SurfacePieces>(
         cso: &Cso<'_, A, B>,
+        partner: Partner,
         normal: DVec3,
         (on_rim, vertex_2): (DVec3, VertexId),
         depth: f64,
     ) -> Option<Self> {
         let rim = cso.shape_1.rim(normal)?;
         let outward_2 = -cso.pose.direction_to_2(normal);
-        let (edge, ball) = match cso.shape_2.edge(outward_2, vertex_2) {
-            Some(edge) => (edge, 0.0),
-            None => centers(cso.shape_2, outward_2, cso.pose.point_to_2(on_rim), depth)?,
+        let (edge, ball) = match partner {
+            Partner::Edge => (cso.shape_2.edge(outward_2, vertex_2)?, 0.0),
+            Partner::Line => centers(cso.shape_2, outward_2, cso.pose.point_to_2(on_rim), depth)?,
         };
         Some(Self {
             rim,
