@@ -56,10 +56,10 @@
 //!
 //! # Errors
 //!
-//! No step or query panics on finite input, and none returns NaN. A surface that is no convex solid is refused by
-//! [`HullShape`] with a [`HullError`]; a plain hull of that kind is left to the fallback, which is counted in
-//! [`Stats::left_to_fallback`] and logged once. Queries that do not know a shape return parry's `Unsupported`, those of
-//! [`query`] a [`QueryError`](query::QueryError).
+//! No step or query panics on finite input, and none returns NaN (parry may, where a pair is left to it). A surface
+//! that is no convex solid is refused by [`HullShape`] with a [`HullError`]; a plain hull of that kind is left to the
+//! fallback, which is counted in [`Stats::left_to_fallback`] and logged once. Queries that do not know a shape return
+//! parry's `Unsupported`, those of [`query`] a [`QueryError`](query::QueryError).
 //!
 //! # Without a physics engine
 //!
