@@ -4,6 +4,7 @@
 pub mod budget;
 pub mod bytes;
 pub mod cases;
+pub mod console;
 pub mod curved;
 pub mod divided;
 pub mod families;

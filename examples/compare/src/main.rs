@@ -12,9 +12,8 @@ mod sweep;
 mod verify;
 
 use std::error::Error;
-use std::fmt::Display;
 use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::BufWriter;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -22,13 +21,14 @@ use std::sync::Arc;
 use clap::Parser;
 use indicatif::{ProgressBar, ProgressStyle};
 use isa_gjk::IsaGjkDispatcher;
-use isa_gjk::recording::Recorder;
+use isa_gjk::recording::{Recorder, RecorderSummary};
 
 use curved::Curved;
 use options::Options;
 use report::Report;
 use rest::Rest;
 use sweep::Sweep;
+use testkit::console::print;
 
 fn main() -> ExitCode {
     let options = Options::parse();
@@ -74,9 +74,8 @@ fn compare(options: &Options) -> Result<(), Box<dyn Error>> {
         chart::frames(path, &report.title(), &runs)?;
     }
     print(&report)?;
-    if let Some(summary) = recorder.map(|recorder| recorder.summary()) {
-        let wrong = summary.recorded + summary.repeated;
-        print(&format!("{wrong} of {} updates look wrong\n", summary.seen))?;
+    if let Some(recorder) = recorder {
+        print_summary(&recorder.summary())?;
     }
     match report.failed_check() {
         true => Err("a manifold is off by more than the limit: see the table".into()),
@@ -90,6 +89,18 @@ fn recorder(options: &Options) -> Result<Option<Arc<Recorder>>, String> {
         Err(error) => Err(format!("cannot write {}: {error}", path.display())),
     };
     options.record.as_ref().map(create).transpose()
+}
+
+fn print_summary(summary: &RecorderSummary) -> Result<(), Box<dyn Error>> {
+    let wrong = summary.recorded + summary.repeated;
+    print(&format!("{wrong} of {} updates look wrong\n", summary.seen))?;
+    if summary.is_full {
+        print(&"the recording is full: the updates after these were not checked\n")?;
+    }
+    match summary.error {
+        Some(error) => Err(format!("the recording ended too soon: {error}").into()),
+        None => Ok(()),
+    }
 }
 
 fn sweep(options: &Options) -> Result<(), Box<dyn Error>> {
@@ -107,7 +118,7 @@ fn sweep(options: &Options) -> Result<(), Box<dyn Error>> {
     if let Some(path) = &options.chart {
         chart::sweep(path, &sweep)?;
     }
-    print(&sweep)
+    Ok(print(&sweep)?)
 }
 
 fn until_asleep(options: &Options) -> Result<(), Box<dyn Error>> {
@@ -128,7 +139,7 @@ fn until_asleep(options: &Options) -> Result<(), Box<dyn Error>> {
     if let Some(path) = &options.chart {
         chart::awake(path, &rest)?;
     }
-    print(&rest)
+    Ok(print(&rest)?)
 }
 
 fn curved(options: &Options) -> Result<(), Box<dyn Error>> {
@@ -142,7 +153,7 @@ fn curved(options: &Options) -> Result<(), Box<dyn Error>> {
     if let Some(file) = outputs.json {
         files::write_json(file, &figures)?;
     }
-    print(&figures)
+    Ok(print(&figures)?)
 }
 
 /// The requested files.
@@ -159,14 +170,6 @@ impl Outputs {
             json: files::create(options.json.as_deref())?,
             csv: files::create(options.csv.as_deref())?,
         })
-    }
-}
-
-fn print(table: &impl Display) -> Result<(), Box<dyn Error>> {
-    match write!(io::stdout().lock(), "{table}") {
-        // The reader of our output has closed it, as `head` does.
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        result => Ok(result?),
     }
 }
 

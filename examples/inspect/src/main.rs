@@ -30,6 +30,7 @@ use rapier3d::prelude::{Pose, Real, Rotation};
 use picture::Snapshot;
 use recorded::Recorded;
 use svg::YAW;
+use testkit::console::print;
 use testkit::numbers::finite;
 use testkit::scenes::{HullSource, hulls};
 
@@ -116,10 +117,9 @@ fn draw(options: &Options) -> Result<(), Box<dyn Error>> {
     if let Some(path) = &options.pair {
         let recorded = Recorded::open(path, options.number)?;
         if options.test {
-            println!("{}", recorded.test());
-            return Ok(());
+            return Ok(print(&format!("{}\n", recorded.test()))?);
         }
-        println!("{}", recorded.summary().join("\n"));
+        print(&format!("{}\n", recorded.summary().join("\n")))?;
         return write(&options.out, &recorded.draw(options.yaw, options.zoom));
     }
     if options.frame >= options.frames {
@@ -150,14 +150,13 @@ fn draw(options: &Options) -> Result<(), Box<dyn Error>> {
     }
     let pose = place(attitude, options.frame, options.frames);
     let snapshot = ask([first, second], &pose, memory, options)?;
-    println!("{}", snapshot.summary().join("\n"));
+    print(&format!("{}\n", snapshot.summary().join("\n")))?;
     write(&options.out, &snapshot.draw(options.zoom))
 }
 
 fn write(out: &Path, picture: &str) -> Result<(), Box<dyn Error>> {
     fs::write(out, picture).map_err(|error| format!("cannot write {}: {error}", out.display()))?;
-    println!("drawn to {}", out.display());
-    Ok(())
+    Ok(print(&format!("drawn to {}\n", out.display()))?)
 }
 
 /// What the dispatcher would ask and remember of the pair.

@@ -34,7 +34,7 @@ impl Recorded {
         let pair = pairs.into_iter().nth(number);
         Ok(Self::new(pair.ok_or_else(|| {
             format!(
-                "{} has {count} pairs, and none of number {number}",
+                "{} has no pair of number {number}: {count} in all, counted from 0",
                 path.display()
             )
         })?))

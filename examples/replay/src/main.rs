@@ -18,6 +18,7 @@ use serde_json::json;
 
 use film::Reel;
 use tape::Tape;
+use testkit::console::print;
 use testkit::numbers::positive;
 use testkit::scenes::{self, HullSource, Hulls, Scene, SceneParams, World};
 
@@ -183,8 +184,7 @@ fn write_page(options: &Options, params: &SceneParams) -> Result<(), Box<dyn Err
             .replacen(HEADER, &header, 1)
             .replacen(TAPE, &format!("\"{}\"", tape.encode()?), 1);
     write(&options.out, &page)?;
-    println!("{} frames", tape.len());
-    Ok(())
+    Ok(print(&format!("{} frames\n", tape.len()))?)
 }
 
 fn write_film(options: &Options, params: &SceneParams, out: &Path) -> Result<(), Box<dyn Error>> {
@@ -204,6 +204,6 @@ fn write_film(options: &Options, params: &SceneParams, out: &Path) -> Result<(),
 
 fn write(out: &Path, text: &str) -> Result<(), Box<dyn Error>> {
     fs::write(out, text).map_err(|error| format!("cannot write {}: {error}", out.display()))?;
-    println!("{:.2} MB in {}", text.len() as f64 / 1e6, out.display());
-    Ok(())
+    let megabytes = text.len() as f64 / 1e6;
+    Ok(print(&format!("{megabytes:.2} MB in {}\n", out.display()))?)
 }

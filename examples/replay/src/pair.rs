@@ -22,7 +22,7 @@ pub fn world(
     let count = pairs.len();
     let pair = pairs.into_iter().nth(number).ok_or_else(|| {
         format!(
-            "{} has {count} pairs, and none of number {number}",
+            "{} has no pair of number {number}: {count} in all, counted from 0",
             path.display()
         )
     })?;
