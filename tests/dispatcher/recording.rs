@@ -259,6 +259,18 @@ fn bad_files_are_named() {
             Kind::NotANumber("x".into()),
         ),
         (
+            "cuboid 0.5 5.0 5.0",
+            "cylinder -0.5 5.0",
+            line_of("shape cuboid"),
+            Kind::BadShape,
+        ),
+        (
+            "cuboid 0.5 5.0 5.0",
+            "ball inf",
+            line_of("shape cuboid"),
+            Kind::BadShape,
+        ),
+        (
             "points 4",
             "points -4",
             line_of("points"),

@@ -52,7 +52,7 @@ impl fmt::Display for RecordingError {
             Kind::NotANumber(word) => write!(f, "`{word}` is not a number that can be here"),
             Kind::UnknownShape(word) => write!(f, "no shape is called `{word}`"),
             Kind::UnknownSuspicion(word) => write!(f, "no suspicion is called `{word}`"),
-            Kind::BadShape => write!(f, "parry makes no such shape"),
+            Kind::BadShape => write!(f, "these numbers make no such shape"),
         }
     }
 }

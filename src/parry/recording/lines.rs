@@ -133,6 +133,11 @@ impl<'a> Words<'a> {
         Ok(numbers)
     }
 
+    /// The numbers among the words still to be read.
+    pub fn reals(&self) -> impl Iterator<Item = Real> + use<'a> {
+        self.words.clone().filter_map(|word| word.parse().ok())
+    }
+
     pub fn vector(&mut self) -> Result<Vector, RecordingError> {
         self.numbers::<Real, 3>().map(Vector::from)
     }

@@ -7,7 +7,7 @@ use parry3d::shape::{
 };
 
 use super::error::{RecordingError, RecordingErrorKind};
-use super::lines::{self, Lines};
+use super::lines::{self, Lines, Words};
 use crate::at::At;
 use crate::hull::build::polyhedron;
 use crate::parry::hull_shape::HullShape;
@@ -105,7 +105,7 @@ fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
 /// Reads a shape, from its first line on.
 pub(super) fn read(lines: &mut Lines<'_>) -> Result<SharedShape, RecordingError> {
     let mut words = lines.after("shape")?;
-    let name = words.next_word()?;
+    let name = possible_name(&mut words)?;
     let shape = match name {
         "hull" => SharedShape::new(surface(lines)?),
         "hull-shape" => {
@@ -144,12 +144,32 @@ pub(super) fn read(lines: &mut Lines<'_>) -> Result<SharedShape, RecordingError>
     Ok(shape)
 }
 
+/// The name of a shape, which may have the numbers after it. Some shapes consist of points, and others only of sizes,
+/// where parry panics if one is negative.
+fn possible_name<'a>(words: &mut Words<'a>) -> Result<&'a str, RecordingError> {
+    const OF_POINTS: [&str; 5] = [
+        "segment",
+        "capsule",
+        "triangle",
+        "round-triangle",
+        "half-space",
+    ];
+    let name = words.next_word()?;
+    let has_points = OF_POINTS.contains(&name);
+    let is_possible = |n: Real| n.is_finite() && (has_points || n.is_sign_positive());
+    match words.reals().all(is_possible) {
+        true => Ok(name),
+        false => Err(words.error(RecordingErrorKind::BadShape)),
+    }
+}
+
 fn surface(lines: &mut Lines<'_>) -> Result<ConvexPolyhedron, RecordingError> {
     let points = lines.list("points", |words| words.vector())?;
     let triangles = lines.list("triangles", |words| words.numbers::<u32, 3>())?;
     let is_known = |corner: &u32| points.try_at(*corner).is_some();
     let bad = lines.error(RecordingErrorKind::BadShape);
-    if !triangles.as_flattened().iter().all(is_known) {
+    let are_finite = points.iter().all(|point| point.is_finite());
+    if !are_finite || !triangles.as_flattened().iter().all(is_known) {
         return Err(bad);
     }
     ConvexPolyhedron::from_convex_mesh(points, &triangles).ok_or(bad)
