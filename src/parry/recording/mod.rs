@@ -55,6 +55,8 @@
 //! | `triangle`, `round-triangle` | three points; the border's radius, if round |
 //! | `cylinder`, `round-cylinder`, `cone`, `round-cone` | half height, radius; the border's radius, if round |
 //! | `half-space` | the outward normal |
+//!
+//! The numbers of a shape are finite, and its sizes are not negative.
 
 mod error;
 mod judge;
