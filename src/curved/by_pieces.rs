@@ -6,14 +6,14 @@ use glam::DVec3;
 
 use super::bends;
 use super::query::{CurvedAnswer, CurvedQuery, apart};
-use super::rim_edge;
+use super::rim_edge::{self, RimPartner};
 use super::separation::NormalSeparation;
 use super::stationary;
 use super::surface_pieces::SurfacePieces;
 use crate::stats::Cost;
 use crate::support::Cso;
 use crate::tolerance::DEPTH_GAP;
-use crate::tuning::{FLUSH_TIE, STILL};
+use crate::tuning::{FLUSH_TIE, LARGE_TURN, SMALL_TURN, STILL};
 
 /// Finds a candidate for a better normal than the one at hand.
 type FindNormal<A, B> =
@@ -51,11 +51,11 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
         at: &NormalSeparation,
     ) -> ControlFlow<CurvedAnswer, NormalSeparation> {
         let steps: [FindNormal<A, B>; 5] = [
-            stationary::near_flat,
-            stationary::ruled,
-            stationary::along_rulings,
+            |cso, at, cost| stationary::flat(cso, at, SMALL_TURN, cost),
+            |cso, at, cost| stationary::ruled(cso, at, SMALL_TURN, cost),
+            |cso, at, cost| stationary::along_rulings(cso, at, SMALL_TURN, cost),
             stationary::smooth,
-            stationary::flat,
+            |cso, at, cost| stationary::flat(cso, at, f64::INFINITY, cost),
         ];
         self.first_proved(at, *at, &steps)
     }
@@ -66,7 +66,10 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
         at: &NormalSeparation,
         best: NormalSeparation,
     ) -> ControlFlow<CurvedAnswer, NormalSeparation> {
-        let steps: [FindNormal<A, B>; 2] = [stationary::far_ruled, stationary::along_far_rulings];
+        let steps: [FindNormal<A, B>; 2] = [
+            |cso, at, cost| stationary::ruled(cso, at, LARGE_TURN, cost),
+            |cso, at, cost| stationary::along_rulings(cso, at, LARGE_TURN, cost),
+        ];
         self.first_proved(at, best, &steps)
     }
 
@@ -124,7 +127,7 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
         if let Some(deepest) = patch.proved(self.cso, found.distance, tolerance) {
             return Some(near(deepest.on_1));
         }
-        let on_1 = rim_edge::proved_under_line(self.cso, found, tolerance)?;
+        let on_1 = rim_edge::proved_crossing(self.cso, RimPartner::Line, found, tolerance)?;
         Some(near(on_1 + moved))
     }
 
@@ -144,7 +147,7 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
         patch.find_extremes();
         match patch.proved(cso, found.distance, tolerance) {
             Some(place) => Some(place.on_1),
-            None => rim_edge::proved_crossing(cso, found, tolerance),
+            None => rim_edge::proved_crossing(cso, RimPartner::Edge, found, tolerance),
         }
     }
 }

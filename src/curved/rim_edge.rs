@@ -8,41 +8,26 @@ use super::surface_pieces::{CircularEdge, SurfacePieces};
 use crate::support::{Cso, VertexId};
 use crate::tolerance::SAME_NORMAL;
 
-/// The point of shape 1 where a rim and an edge of overlapping shapes cross, if they prove that no direction
-/// has a smaller depth than the normal at hand, up to `tolerance`.
-///
-/// The disc within the rim, swept along the edge, lies in the difference. It is an elliptic cylinder with
-/// slanted ends. The depth is proved if this cylinder contains the ball with the depth as radius.
-pub(super) fn proved_crossing<A: SurfacePieces, B: SurfacePieces>(
-    cso: &Cso<'_, A, B>,
-    at: &NormalSeparation,
-    tolerance: f64,
-) -> Option<DVec3> {
-    proved_by(cso, at, tolerance, Partner::Edge)
-}
-
-/// The same of a rim and a line of a ruled side. Balls inside the other shape that touch the line have their centres on a
-/// segment: it takes the place of the edge, and the radius of the balls is taken off the depth.
-pub(super) fn proved_under_line<A: SurfacePieces, B: SurfacePieces>(
-    cso: &Cso<'_, A, B>,
-    at: &NormalSeparation,
-    tolerance: f64,
-) -> Option<DVec3> {
-    proved_by(cso, at, tolerance, Partner::Line)
-}
-
 /// What a rim crosses.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Partner {
+#[derive(Clone, Copy)]
+pub(super) enum RimPartner {
     Edge,
+    /// A line of a ruled side.
     Line,
 }
 
-fn proved_by<A: SurfacePieces, B: SurfacePieces>(
+/// The point of shape 1 where a rim and its partner cross, if they prove that no direction of overlapping shapes has a
+/// smaller depth than the normal at hand, up to `tolerance`.
+///
+/// The disc within the rim, swept along the edge, lies in the difference. It is an elliptic cylinder with
+/// slanted ends. The depth is proved if this cylinder contains the ball with the depth as radius. Balls inside the other
+/// shape that touch a line have their centres on a segment: it takes the place of the edge, and the radius of the balls is
+/// taken off the depth.
+pub(super) fn proved_crossing<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
+    partner: RimPartner,
     at: &NormalSeparation,
     tolerance: f64,
-    partner: Partner,
 ) -> Option<DVec3> {
     if at.distance >= 0.0 {
         return None;
@@ -81,7 +66,7 @@ impl Sweep {
     /// `on_rim`, and at the vertex `vertex_2`.
     fn of_first_rim<A: SurfacePieces, B: SurfacePieces>(
         cso: &Cso<'_, A, B>,
-        partner: Partner,
+        partner: RimPartner,
         normal: DVec3,
         (on_rim, vertex_2): (DVec3, VertexId),
         depth: f64,
@@ -89,8 +74,10 @@ impl Sweep {
         let rim = cso.shape_1.rim(normal)?;
         let outward_2 = -cso.pose.direction_to_2(normal);
         let (edge, ball) = match partner {
-            Partner::Edge => (cso.shape_2.edge(outward_2, vertex_2)?, 0.0),
-            Partner::Line => centers(cso.shape_2, outward_2, cso.pose.point_to_2(on_rim), depth)?,
+            RimPartner::Edge => (cso.shape_2.edge(outward_2, vertex_2)?, 0.0),
+            RimPartner::Line => {
+                centers(cso.shape_2, outward_2, cso.pose.point_to_2(on_rim), depth)?
+            }
         };
         Some(Self {
             rim,
@@ -102,10 +89,7 @@ impl Sweep {
     }
 
     fn proves(&self, depth: f64, tolerance: f64) -> bool {
-        self.contains_ball(depth - self.ball, tolerance)
-    }
-
-    fn contains_ball(&self, depth: f64, tolerance: f64) -> bool {
+        let depth = depth - self.ball;
         let [from, to] = self.edge;
         let length = from.distance(to);
         let (CircularEdge { axis, radius, .. }, along) = (self.rim, (to - from) / length);

@@ -10,27 +10,11 @@ use super::surface_pieces::{Ruling, SurfacePieces};
 use crate::stats::Cost;
 use crate::support::Cso;
 use crate::tolerance::{PARALLEL_AXES, SETTLED_ANGLE};
-use crate::tuning::{LARGE_TURN, LONGEST_STEP, MAX_NEWTON_STEPS, SMALL_TURN};
+use crate::tuning::{LONGEST_STEP, MAX_NEWTON_STEPS};
 
-/// Of the flat sides whose normal is close to the one at hand, the normal with the greatest separation.
-pub(super) fn near_flat<A: SurfacePieces, B: SurfacePieces>(
-    cso: &Cso<'_, A, B>,
-    at: &NormalSeparation,
-    cost: &mut Cost,
-) -> Option<NormalSeparation> {
-    flat_within(cso, at, SMALL_TURN, cost)
-}
-
-/// Of the flat sides at the extreme vertices, the normal with the greatest separation.
+/// Of the flat sides at the extreme vertices whose normal is within an angle of the one at hand, the normal with the
+/// greatest separation.
 pub(super) fn flat<A: SurfacePieces, B: SurfacePieces>(
-    cso: &Cso<'_, A, B>,
-    at: &NormalSeparation,
-    cost: &mut Cost,
-) -> Option<NormalSeparation> {
-    flat_within(cso, at, f64::INFINITY, cost)
-}
-
-fn flat_within<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
     turn: f64,
@@ -53,26 +37,9 @@ fn is_within(ruling: &Ruling, turn: f64, about: DVec3) -> bool {
     (ruling.axis.dot(about) - ruling.sine).abs() < turn
 }
 
-/// The normal with the greatest separation that satisfies two rulings, one of each shape. Both have normals close to the
-/// one at hand.
+/// The normal with the greatest separation that satisfies two rulings, one of each shape. Both have normals within an
+/// angle of the one at hand.
 pub(super) fn ruled<A: SurfacePieces, B: SurfacePieces>(
-    cso: &Cso<'_, A, B>,
-    at: &NormalSeparation,
-    cost: &mut Cost,
-) -> Option<NormalSeparation> {
-    ruled_within(cso, at, SMALL_TURN, cost)
-}
-
-/// The same of rulings that are farther away.
-pub(super) fn far_ruled<A: SurfacePieces, B: SurfacePieces>(
-    cso: &Cso<'_, A, B>,
-    at: &NormalSeparation,
-    cost: &mut Cost,
-) -> Option<NormalSeparation> {
-    ruled_within(cso, at, LARGE_TURN, cost)
-}
-
-fn ruled_within<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
     turn: f64,
@@ -122,25 +89,9 @@ fn satisfying_both(first: &Ruling, second: &Ruling, about: DVec3) -> Option<DVec
     })
 }
 
-/// The normal with the greatest separation that satisfies one ruling, which has normals close to the one at hand.
+/// The normal with the greatest separation that satisfies one ruling, which has normals within an angle of the one at
+/// hand.
 pub(super) fn along_rulings<A: SurfacePieces, B: SurfacePieces>(
-    cso: &Cso<'_, A, B>,
-    at: &NormalSeparation,
-    cost: &mut Cost,
-) -> Option<NormalSeparation> {
-    along_rulings_within(cso, at, SMALL_TURN, cost)
-}
-
-/// The same of rulings that are farther away.
-pub(super) fn along_far_rulings<A: SurfacePieces, B: SurfacePieces>(
-    cso: &Cso<'_, A, B>,
-    at: &NormalSeparation,
-    cost: &mut Cost,
-) -> Option<NormalSeparation> {
-    along_rulings_within(cso, at, LARGE_TURN, cost)
-}
-
-fn along_rulings_within<A: SurfacePieces, B: SurfacePieces>(
     cso: &Cso<'_, A, B>,
     at: &NormalSeparation,
     turn: f64,
