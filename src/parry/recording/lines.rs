@@ -133,9 +133,31 @@ impl<'a> Words<'a> {
         Ok(numbers)
     }
 
-    /// The numbers among the words still to be read.
-    pub fn reals(&self) -> impl Iterator<Item = Real> + use<'a> {
-        self.words.clone().filter_map(|word| word.parse().ok())
+    /// A number of a shape.
+    pub fn finite(&mut self) -> Result<Real, RecordingError> {
+        let number = self.number()?;
+        self.possible(number, Real::is_finite(number))
+    }
+
+    /// A size of a shape, which is not negative: parry panics if it is.
+    pub fn size(&mut self) -> Result<Real, RecordingError> {
+        let size = self.finite()?;
+        self.possible(size, size.is_sign_positive())
+    }
+
+    /// The sizes of a shape along three axes.
+    pub fn sizes(&mut self) -> Result<Vector, RecordingError> {
+        Ok(Vector::new(self.size()?, self.size()?, self.size()?))
+    }
+
+    /// A point of a shape.
+    pub fn point(&mut self) -> Result<Vector, RecordingError> {
+        Ok(Vector::new(self.finite()?, self.finite()?, self.finite()?))
+    }
+
+    fn possible(&self, number: Real, is_possible: bool) -> Result<Real, RecordingError> {
+        let bad = || self.error(RecordingErrorKind::BadShape);
+        is_possible.then_some(number).ok_or_else(bad)
     }
 
     pub fn vector(&mut self) -> Result<Vector, RecordingError> {

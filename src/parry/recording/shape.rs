@@ -7,7 +7,7 @@ use parry3d::shape::{
 };
 
 use super::error::{RecordingError, RecordingErrorKind};
-use super::lines::{self, Lines, Words};
+use super::lines::{self, Lines};
 use crate::at::At;
 use crate::hull::build::polyhedron;
 use crate::parry::hull_shape::HullShape;
@@ -105,7 +105,7 @@ fn triangles(polyhedron: &ConvexPolyhedron) -> Option<Vec<[u32; 3]>> {
 /// Reads a shape, from its first line on.
 pub(super) fn read(lines: &mut Lines<'_>) -> Result<SharedShape, RecordingError> {
     let mut words = lines.after("shape")?;
-    let name = possible_name(&mut words)?;
+    let name = words.next_word()?;
     let shape = match name {
         "hull" => SharedShape::new(surface(lines)?),
         "hull-shape" => {
@@ -113,54 +113,35 @@ pub(super) fn read(lines: &mut Lines<'_>) -> Result<SharedShape, RecordingError>
             SharedShape::new(hull.map_err(|_| lines.error(RecordingErrorKind::BadShape))?)
         }
         "round-hull" => SharedShape::new(RoundConvexPolyhedron {
-            border_radius: words.number()?,
+            border_radius: words.size()?,
             inner_shape: surface(lines)?,
         }),
-        "ball" => SharedShape::ball(words.number()?),
-        "cuboid" => SharedShape::new(Cuboid::new(words.vector()?)),
+        "ball" => SharedShape::ball(words.size()?),
+        "cuboid" => SharedShape::new(Cuboid::new(words.sizes()?)),
         "round-cuboid" => SharedShape::new(RoundCuboid {
-            inner_shape: Cuboid::new(words.vector()?),
-            border_radius: words.number()?,
+            inner_shape: Cuboid::new(words.sizes()?),
+            border_radius: words.size()?,
         }),
-        "capsule" => SharedShape::capsule(words.vector()?, words.vector()?, words.number()?),
-        "segment" => SharedShape::segment(words.vector()?, words.vector()?),
-        "triangle" => SharedShape::triangle(words.vector()?, words.vector()?, words.vector()?),
+        "capsule" => SharedShape::capsule(words.point()?, words.point()?, words.finite()?),
+        "segment" => SharedShape::segment(words.point()?, words.point()?),
+        "triangle" => SharedShape::triangle(words.point()?, words.point()?, words.point()?),
         "round-triangle" => {
-            let [a, b, c] = [words.vector()?, words.vector()?, words.vector()?];
-            SharedShape::round_triangle(a, b, c, words.number()?)
+            let [a, b, c] = [words.point()?, words.point()?, words.point()?];
+            SharedShape::round_triangle(a, b, c, words.finite()?)
         }
         "half-space" => SharedShape::new(HalfSpace {
-            normal: words.vector()?,
+            normal: words.point()?,
         }),
-        "cylinder" => SharedShape::cylinder(words.number()?, words.number()?),
+        "cylinder" => SharedShape::cylinder(words.size()?, words.size()?),
         "round-cylinder" => {
-            SharedShape::round_cylinder(words.number()?, words.number()?, words.number()?)
+            SharedShape::round_cylinder(words.size()?, words.size()?, words.size()?)
         }
-        "cone" => SharedShape::cone(words.number()?, words.number()?),
-        "round-cone" => SharedShape::round_cone(words.number()?, words.number()?, words.number()?),
+        "cone" => SharedShape::cone(words.size()?, words.size()?),
+        "round-cone" => SharedShape::round_cone(words.size()?, words.size()?, words.size()?),
         _ => return Err(words.error(RecordingErrorKind::UnknownShape(name.to_owned()))),
     };
     words.end()?;
     Ok(shape)
-}
-
-/// The name of a shape, which may have the numbers after it. Some shapes consist of points, and others only of sizes,
-/// where parry panics if one is negative.
-fn possible_name<'a>(words: &mut Words<'a>) -> Result<&'a str, RecordingError> {
-    const OF_POINTS: [&str; 5] = [
-        "segment",
-        "capsule",
-        "triangle",
-        "round-triangle",
-        "half-space",
-    ];
-    let name = words.next_word()?;
-    let has_points = OF_POINTS.contains(&name);
-    let is_possible = |n: Real| n.is_finite() && (has_points || n.is_sign_positive());
-    match words.reals().all(is_possible) {
-        true => Ok(name),
-        false => Err(words.error(RecordingErrorKind::BadShape)),
-    }
 }
 
 fn surface(lines: &mut Lines<'_>) -> Result<ConvexPolyhedron, RecordingError> {
