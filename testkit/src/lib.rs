@@ -16,6 +16,7 @@ pub mod oracle;
 pub mod pair;
 pub mod pose;
 pub mod quality;
+pub mod recorded;
 pub mod report;
 pub mod rounded;
 pub mod scanned;

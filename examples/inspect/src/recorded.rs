@@ -1,7 +1,5 @@
 //! What is to be seen of a pair in a recording.
 
-use std::error::Error;
-use std::fs;
 use std::path::Path;
 
 use glam::DVec3;
@@ -25,19 +23,8 @@ pub struct Recorded {
 
 impl Recorded {
     /// The pair with this number, counted from 0, in a file.
-    pub fn open(path: &Path, number: usize) -> Result<Self, Box<dyn Error>> {
-        let text = fs::read_to_string(path)
-            .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-        let pairs = recording::read(&text)
-            .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-        let count = pairs.len();
-        let pair = pairs.into_iter().nth(number);
-        Ok(Self::new(pair.ok_or_else(|| {
-            format!(
-                "{} has no pair of number {number}: {count} in all, counted from 0",
-                path.display()
-            )
-        })?))
+    pub fn open(path: &Path, number: usize) -> Result<Self, String> {
+        Ok(Self::new(testkit::recorded::pair(path, number)?))
     }
 
     fn new(pair: RecordedPair) -> Self {

@@ -1,11 +1,8 @@
 //! A pair of a recording as a world.
 
-use std::error::Error;
-use std::fs;
 use std::path::Path;
 
 use isa_gjk::IsaGjkDispatcher;
-use isa_gjk::recording;
 use rapier3d::prelude::{ColliderBuilder, RigidBodyBuilder, Vector};
 use testkit::scenes::World;
 
@@ -14,18 +11,8 @@ pub fn world(
     path: &Path,
     number: usize,
     dispatcher: Option<IsaGjkDispatcher>,
-) -> Result<World, Box<dyn Error>> {
-    let text = fs::read_to_string(path)
-        .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-    let pairs = recording::read(&text)
-        .map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-    let count = pairs.len();
-    let pair = pairs.into_iter().nth(number).ok_or_else(|| {
-        format!(
-            "{} has no pair of number {number}: {count} in all, counted from 0",
-            path.display()
-        )
-    })?;
+) -> Result<World, String> {
+    let pair = testkit::recorded::pair(path, number)?;
     let [first, second] = pair.shapes;
     let mut world = World::new(dispatcher, false);
     let physics = &mut world.physics;
