@@ -86,7 +86,7 @@ pub enum Left {
     OtherShape,
     /// The relative pose is not finite.
     NotFinite,
-    /// Neither shape is a hull, a cylinder or a cone, and they are not two capsules.
+    /// Neither shape is a hull, a cylinder, a cone or a convex shape of a user's own, and they are not two capsules.
     NoHull,
 }
 

@@ -54,6 +54,11 @@ pub trait Support {
         None
     }
 
+    /// How far the shape may reach beyond a support point, if that is rounded to f32.
+    fn rounding(&self) -> f64 {
+        0.0
+    }
+
     /// Whether contacts roll over a round surface if their outward unit normal turns from one to another.
     #[inline]
     fn rolls(&self, _from: DVec3, _to: DVec3) -> bool {

@@ -28,8 +28,7 @@ pub const CLUSTER_ANGLE_COS: f64 = COS_1_DEGREE;
 /// one: the normal of a triangle is within 1 degree of its face's, and that is within 1 degree of its cluster's.
 pub const NEARLY_FLAT_COS: f64 = 0.997_564;
 
-/// A triangle lower than this share of the radius is a sliver: rounding of its corners can turn
-/// its plane by several degrees.
+/// A triangle lower than this share of the radius is a sliver: rounding can turn its plane by several degrees.
 pub const MIN_TRIANGLE_HEIGHT: f64 = 4e-6;
 
 /// Greatest depth of a concave edge, relative to the radius: sixteen f32 roundings. On a needle a climb
@@ -54,8 +53,7 @@ pub const FLAT_EDGE: f64 = 2e-6;
 /// vertex is the highest of its neighbours over each of its triangles.
 pub const STEEP_EDGE: f64 = 1e-5;
 
-/// The corners of a flat side are at most this share of the radius from one plane. Then each of its diagonals
-/// is a [`FLAT_EDGE`].
+/// The corners of a flat side are this near to one plane, in radii: then each of its diagonals is a [`FLAT_EDGE`].
 pub const FLAT_SIDE: f64 = FLAT_EDGE / 8.0;
 
 /// Where two flat sides meet, any two of their triangles bend by more than this share of the radius. Then the
@@ -193,6 +191,10 @@ pub(crate) const JOHNSON_ERROR: f64 = 1e-10;
 /// so a search would find the depth that a polytope proves: answers do not depend on what is cached.
 pub(crate) const PROOF_MARGIN: f64 = 0.999;
 
+/// Support points of a user's own shape may be off by this share of their distance from the origin: their code rounds
+/// to f32, and so is the direction that it gets.
+pub(crate) const SUPPORT_ROUNDING: f64 = 8.0 / (1 << 24) as f64;
+
 /// Two heights computed in f32 are in the right order if they differ by more than this, for points in the
 /// unit ball and a direction whose largest coordinate is 1. Coordinates, direction, products and two sums are
 /// rounded, each by at most a unit of the sum of the products, which is below √3. So both heights together
@@ -263,8 +265,7 @@ const OUTPUT_ERROR: f64 = f32::EPSILON as f64;
 
 const _: () = assert!(WORST_ERROR <= PROMISED_ERROR, "more than the promise");
 
-/// Cores of capsules that are nearer than this share of the pair's size meet: the direction between their
-/// nearest points is mere rounding.
+/// Cores of capsules nearer than this share of the pair's size meet: the direction between them is mere rounding.
 pub const CAPSULE_TOUCH: f64 = 1e-12;
 
 /// Gaps that differ by less than this share of a radius count as equal: half of the promised accuracy.
@@ -278,8 +279,7 @@ pub const ON_OUTLINE: f64 = 1e-12;
 /// square is as deep as the rim up to the promised accuracy, and noise must not turn the square.
 pub const LEVEL: f64 = 5e-5;
 
-/// A normal counts as that of a piece of surface if the two differ by less than this. A bound loses only the
-/// square of the difference.
+/// A normal counts as that of a piece of surface if they differ by less than this. A bound loses only its square.
 pub const SAME_NORMAL: f64 = 1e-7;
 
 /// Axes count as parallel if the squared sine of their angle is below this: f64 leaves half of its digits.

@@ -100,7 +100,12 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
     }
 
     pub(super) fn tolerance(&self) -> f64 {
-        DEPTH_GAP * self.cso.min_radius()
+        DEPTH_GAP * self.cso.min_radius() + self.rounding()
+    }
+
+    /// How far the difference may reach beyond a support point.
+    pub(super) fn rounding(&self) -> f64 {
+        self.cso.shape_1.rounding() + self.cso.shape_2.rounding()
     }
 
     /// The answer along a normal, if the extreme points or the patch prove it.

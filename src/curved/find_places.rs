@@ -152,7 +152,7 @@ impl Patch {
                 [Some(first), Some(second)] => self.add_two_discs([&a, &b], [first, second]),
                 [Some(circle), None] => self.add_disc(0, &a, circle, true),
                 [None, Some(circle)] => self.add_disc(1, &b, circle, true),
-                [None, None] => {}
+                [None, None] => self.add_two_polygons(),
             },
             [Piece::Flat(_), Piece::Line(line)] => self.add_line(1, &line),
             [Piece::Line(line), Piece::Flat(_)] => self.add_line(0, &line),

@@ -33,6 +33,7 @@ mod over;
 mod patch;
 mod piece;
 mod place;
+mod polygons;
 mod polytope;
 mod query;
 mod rim_edge;
@@ -45,6 +46,6 @@ mod surface_pieces;
 
 pub use contacts::contacts;
 pub use patch::{ContactPlace, Patch};
-pub use piece::{FlatSide, Piece};
+pub use piece::{FlatSide, Outline, Piece};
 pub use query::{CurvedAnswer, CurvedQuery, CurvedScratch, Hint};
 pub use surface_pieces::{CircularEdge, Foot, Ruling, SurfacePieces};

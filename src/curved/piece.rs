@@ -106,6 +106,22 @@ pub(super) fn across(dir: DVec3, axis: DVec3) -> Option<DVec3> {
 }
 
 impl Piece {
+    /// An edge with a border: the line on its side that is extreme along `dir`. `None` for a point.
+    pub fn of_edge([a, b]: [DVec3; 2], dir: DVec3, border: f64) -> Option<Self> {
+        let axis = (b - a).try_normalize()?;
+        let outward = across(dir.normalize(), axis)?;
+        Some(Self::Line(Generator {
+            ends: [a, b].map(|end| end + outward * border),
+            surface: RuledSurface {
+                origin: a,
+                axis,
+                radius: border,
+                slope: 0.0,
+            },
+            ball: TangentBall::default(),
+        }))
+    }
+
     /// From frame 2 to frame 1.
     pub fn to_frame_1(self, pose: &RelativePose) -> Self {
         match self {

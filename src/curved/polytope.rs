@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::piece::{FlatSide, Generator, Outline, Piece, RuledSurface, TangentBall, across};
+use super::piece::{FlatSide, Outline, Piece};
 use super::surface_pieces::{CircularEdge, Ruling, SurfacePieces};
 use crate::primitive::nearest_share;
 use crate::query::inset;
@@ -86,14 +86,14 @@ impl<P: Polytope> SurfacePieces for P {
             0 | 1 => Piece::Point(self.vertex(vertex)),
             2 => {
                 let ends = [0, 1].map(|i| self.vertex(self.face_vertex(face, i)));
-                line_piece(ends, dir, border).unwrap_or(Piece::Point(self.vertex(vertex)))
+                Piece::of_edge(ends, dir, border).unwrap_or(Piece::Point(self.vertex(vertex)))
             }
             len => {
                 let normal = self.face_normal(face);
                 // A sliver has no normal, and a face seen edge-on is an edge.
                 if normal.dot(dir) <= EDGE_ON {
                     let edge = self.edge(dir, vertex);
-                    let line = edge.and_then(|edge| line_piece(edge, dir, border));
+                    let line = edge.and_then(|edge| Piece::of_edge(edge, dir, border));
                     return line.unwrap_or(Piece::Point(self.vertex(vertex)));
                 }
                 let moved = normal * border;
@@ -109,20 +109,4 @@ impl<P: Polytope> SurfacePieces for P {
             }
         }
     }
-}
-
-/// The line on the side of a capsule that is extreme along `dir`.
-fn line_piece([a, b]: [DVec3; 2], dir: DVec3, border: f64) -> Option<Piece> {
-    let axis = (b - a).try_normalize()?;
-    let outward = across(dir.normalize(), axis)?;
-    Some(Piece::Line(Generator {
-        ends: [a, b].map(|end| end + outward * border),
-        surface: RuledSurface {
-            origin: a,
-            axis,
-            radius: border,
-            slope: 0.0,
-        },
-        ball: TangentBall::default(),
-    }))
 }

@@ -26,7 +26,8 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
         let stage = start.gjk();
         let size = self.cso.size();
         let (mut vertices, mut count) = ([at.extreme; 3], 1);
-        for gap in [COARSE_GAP, FINE_GAP].map(|gap| gap * self.cso.min_radius()) {
+        let coarse = COARSE_GAP * self.cso.min_radius();
+        for gap in [coarse, self.fine_gap()] {
             let outcome = gjk::distance_within::<Preferred, _, _>(
                 self.cso,
                 &vertices[..count],
@@ -64,6 +65,11 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
             }
         }
         None
+    }
+
+    /// How near the bounds of a fine search get to each other.
+    fn fine_gap(&self) -> f64 {
+        FINE_GAP * self.cso.min_radius() + self.rounding()
     }
 
     /// A coarse search for the depth leads to the pieces in contact. If they do not prove the answer, a fine
@@ -139,7 +145,7 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
             normal * -best.distance,
             normal,
             |apart, cost| [apart.support(normal, best.extreme.ids, cost)],
-            FINE_GAP * cso.min_radius() / cso.size(),
+            self.fine_gap() / cso.size(),
             self.cost,
         )?;
         Some(closest.on_1)

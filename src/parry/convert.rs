@@ -9,6 +9,7 @@ use parry3d::shape::{
     ShapeType, Triangle, TypedShape,
 };
 
+use crate::parry::custom::CustomShape;
 use crate::pose::unit_scale;
 use crate::primitive::{Ball, Cone, CuboidPolytope, Cylinder, Segment, TrianglePolytope};
 use crate::support::{ShapeId, ShapeKind};
@@ -35,24 +36,31 @@ pub(crate) fn half_space(half_space: &ParryHalfSpace) -> Option<HalfSpace> {
 }
 
 /// A convex shape other than a hull, without its border.
-pub(crate) enum Core {
+pub(crate) enum Core<'a> {
     Ball(Ball),
     Segment(Segment),
     Triangle(TrianglePolytope),
     Cuboid(CuboidPolytope),
     Cylinder(Cylinder),
     Cone(Cone),
+    Custom(CustomShape<'a>),
 }
 
-impl Core {
+impl<'a> Core<'a> {
     /// The core of a shape, and the radius of its border.
     #[inline]
-    pub fn of(shape: &dyn Shape) -> Option<(Self, Real)> {
+    pub fn of(shape: &'a dyn Shape) -> Option<(Self, Real)> {
         // The typed shape of a user's own shape may only be similar.
         match shape.shape_type() {
-            ShapeType::Custom => None,
+            ShapeType::Custom => Self::of_custom(shape),
             _ => Self::of_typed(shape.as_typed_shape()),
         }
+    }
+
+    #[cold]
+    fn of_custom(shape: &'a dyn Shape) -> Option<(Self, Real)> {
+        let (core, border) = CustomShape::of(shape)?;
+        Some((Self::Custom(core), border))
     }
 
     /// Like [`of`](Self::of), for a shape of parry's own.
@@ -90,9 +98,9 @@ impl Core {
         }
     }
 
-    /// Whether the surface is curved, so that the core is no polytope.
+    /// Whether the surface may be curved, so that the core is no polytope.
     pub fn is_curved(&self) -> bool {
-        matches!(self, Self::Cylinder(_) | Self::Cone(_))
+        matches!(self, Self::Cylinder(_) | Self::Cone(_) | Self::Custom(_))
     }
 }
 

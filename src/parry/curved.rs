@@ -1,4 +1,4 @@
-//! Pairs without a hull: cylinders and cones with other shapes, and two capsules.
+//! Pairs without a hull: cylinders, cones and shapes of a user's own with other shapes, and two capsules.
 
 use parry3d::math::Real;
 use parry3d::query::Unsupported;
@@ -8,6 +8,7 @@ use crate::curved::SurfacePieces;
 use crate::parry::balls::update_ball;
 use crate::parry::capsules::update_capsules;
 use crate::parry::convert::{self, Core, HalfSpace};
+use crate::parry::custom::has_support_map;
 use crate::parry::manifold::UpdateManifold;
 use crate::parry::operand::is_hull;
 use crate::parry::order::PairOrder;
@@ -15,16 +16,17 @@ use crate::parry::pair::Pair;
 use crate::parry::workspace::ThreadWorkspace;
 use crate::primitive::Revolved;
 
-/// Whether a shape is a cylinder or a cone.
+/// Whether a shape is a cylinder or a cone, or may be curved since it is a user's own.
 fn is_curved(shape: &dyn Shape) -> bool {
-    use ShapeType::{Cone, Cylinder, RoundCone, RoundCylinder};
-    matches!(
-        shape.shape_type(),
-        Cylinder | Cone | RoundCylinder | RoundCone
-    )
+    use ShapeType::{Cone, Custom, Cylinder, RoundCone, RoundCylinder};
+    match shape.shape_type() {
+        Cylinder | Cone | RoundCylinder | RoundCone => true,
+        Custom => has_support_map(shape),
+        _ => false,
+    }
 }
 
-/// Whether a shape is a hull, a cylinder or a cone: those of which one makes a pair ours.
+/// Whether a shape is a hull or may be curved: those of which one makes a pair ours.
 pub(crate) fn is_hull_or_curved(shape: &dyn Shape) -> bool {
     is_hull(shape) || is_curved(shape)
 }
@@ -69,11 +71,12 @@ fn update_curved(
     match second {
         Core::Cylinder(second) => pair.with(first, second),
         Core::Cone(second) => pair.with(first, second),
+        Core::Custom(second) => pair.with_both(first, second),
         _ => Err(Unsupported),
     }
 }
 
-/// Parry's routine is exact for shapes without a border.
+/// Parry's routine is exact for cylinders and cones without a border.
 fn update_on_half_space(
     order: PairOrder,
     half_space: &ParryHalfSpace,
@@ -86,6 +89,9 @@ fn update_on_half_space(
             on_half_space(order, half_space, (&solid, border), update)
         }
         Some((Core::Cone(solid), border)) if border > 0.0 => {
+            on_half_space(order, half_space, (&solid, border), update)
+        }
+        Some((Core::Custom(solid), border)) => {
             on_half_space(order, half_space, (&solid, border), update)
         }
         _ => Err(Unsupported),
@@ -127,6 +133,7 @@ impl PairUpdate<'_, '_> {
             Core::Cuboid(first) => self.with_both(first, second),
             Core::Cylinder(first) => self.with_both(first, second),
             Core::Cone(first) => self.with_both(first, second),
+            Core::Custom(_) => self.with_both(first, second),
         }
     }
 

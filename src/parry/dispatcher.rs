@@ -12,6 +12,7 @@ use parry3d::shape::Shape;
 use crate::map_pair::map_pair;
 use crate::parry::composite;
 use crate::parry::constraints::Constraints;
+use crate::parry::custom::is_custom;
 use crate::parry::hull_cache::epoch::{Epoch, EpochSource};
 use crate::parry::operand::Operand;
 use crate::parry::recording::Recorder;
@@ -27,12 +28,13 @@ use crate::stats::{SharedStats, Stats};
 ///
 /// | Query | Pairs that it answers itself, in either order |
 /// |---|---|
-/// | contact manifolds | a hull with a hull, cuboid, triangle, ball, capsule, segment or half-space; a cylinder or cone with a hull, cuboid, triangle, ball, capsule, segment, cylinder or cone, and with a half-space if it is rounded; two capsules |
-/// | `distance`, `closest_points`, `contact`, `intersection_test` | all convex shapes, but for half-spaces without a hull, and balls with shapes that are neither rounded nor hulls (`contact` knows those with cylinders and cones) |
+/// | contact manifolds | a hull with a hull, cuboid, triangle, ball, capsule, segment or half-space; a cylinder or cone with a hull, cuboid, triangle, ball, capsule, segment, cylinder or cone, and with a half-space if it is rounded; two capsules; a shape of your own with all of these |
+/// | `distance`, `closest_points`, `contact`, `intersection_test` | all convex shapes, but for half-spaces without a hull, and balls with shapes that are neither rounded nor hulls nor your own (`contact` knows those with cylinders and cones) |
 /// | `cast_shapes`, `cast_shapes_nonlinear` | all convex shapes but half-spaces |
 ///
 /// A hull is a `ConvexPolyhedron`, a `RoundConvexPolyhedron` or a [`HullShape`](crate::HullShape); cuboids, triangles,
-/// cylinders and cones may be rounded. Compounds, meshes, height fields and voxels are answered part by part, where
+/// cylinders and cones may be rounded. A shape of your own (`ShapeType::Custom`) takes part if its `as_support_map` or
+/// `as_polygonal_feature_map` returns something; only the latter gives more than one contact. Compounds, meshes, height fields and voxels are answered part by part, where
 /// parry has a routine that does so: it has none for `distance` and `closest_points` of height fields and voxels, for
 /// `contact` with voxels, and for `cast_shapes_nonlinear` and (but for balls) `intersection_test` with height fields. All
 /// other pairs go to the fallback `F`: parry's dispatcher, or another one given to [`with_fallback`](Self::with_fallback). Only a pair
@@ -71,11 +73,16 @@ pub struct IsaGjkDispatcher<F = DefaultQueryDispatcher> {
     stats: SharedStats,
     epochs: EpochSource,
     recorder: Option<Arc<Recorder>>,
+    /// Whether the fallback gets the pairs of a user's own shapes.
+    leaves_custom: bool,
 }
 
 impl Default for IsaGjkDispatcher {
     fn default() -> Self {
-        Self::with_fallback(DefaultQueryDispatcher)
+        Self {
+            leaves_custom: false,
+            ..Self::with_fallback(DefaultQueryDispatcher)
+        }
     }
 }
 
@@ -83,7 +90,9 @@ impl<F> IsaGjkDispatcher<F> {
     /// A dispatcher that passes all pairs that it does not answer itself to `fallback`: a dispatcher of your
     /// own, or several in parry's `QueryDispatcherChain`. [`Stats::left_to_fallback`] counts them, by reason.
     ///
-    /// The fallback gets whole pairs, and parts of the composite shapes that this dispatcher takes apart.
+    /// The fallback gets whole pairs, and parts of the composite shapes that this dispatcher takes apart. It also gets
+    /// all pairs of shapes of your own (`ShapeType::Custom`) but [`HullShape`](crate::HullShape)s; the default dispatcher
+    /// answers those that have a support mapping itself.
     ///
     /// ```
     /// use isa_gjk::IsaGjkDispatcher;
@@ -102,6 +111,7 @@ impl<F> IsaGjkDispatcher<F> {
             stats: SharedStats::default(),
             epochs: EpochSource::default(),
             recorder: None,
+            leaves_custom: true,
         }
     }
 
@@ -135,12 +145,25 @@ impl<F> IsaGjkDispatcher<F> {
         }
     }
 
+    /// Asks `answer`, unless the pair is left to the fallback.
+    pub(crate) fn unless_left<T>(
+        &self,
+        shapes: [&dyn Shape; 2],
+        answer: impl FnOnce() -> Result<T, Unsupported>,
+    ) -> Result<T, Unsupported> {
+        if self.leaves_custom && shapes.into_iter().any(is_custom) {
+            return Err(Unsupported);
+        }
+        answer()
+    }
+
     fn updater(&self, epoch: Epoch) -> Updater<'_, F> {
         Updater {
             fallback: &self.fallback,
             stats: &self.stats,
             recorder: self.recorder.as_deref(),
             epoch,
+            leaves_custom: self.leaves_custom,
         }
     }
 

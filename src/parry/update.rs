@@ -6,6 +6,7 @@ use parry3d::query::{ContactManifold, PersistentQueryDispatcher, Unsupported};
 use crate::map_pair::map_pair;
 use crate::parry::constraints::Constraints;
 use crate::parry::curved::update_without_hull;
+use crate::parry::custom::is_custom;
 use crate::parry::hull_cache::epoch::Epoch;
 use crate::parry::manifold::{ErasedManifold, UpdateManifold};
 use crate::parry::operand::Operand;
@@ -21,6 +22,8 @@ pub(crate) struct Updater<'a, F> {
     pub recorder: Option<&'a Recorder>,
     /// The epoch in which the shapes do not change.
     pub epoch: Epoch,
+    /// Whether the fallback gets the pairs of a user's own shapes.
+    pub leaves_custom: bool,
 }
 
 impl<F> Clone for Updater<'_, F> {
@@ -100,6 +103,7 @@ impl<F> Updater<'_, F> {
         C: Default + Copy + Send + Sync,
         F: PersistentQueryDispatcher<M, C>,
     {
+        let is_left = self.leaves_custom && operands.iter().any(|operand| is_custom(operand.shape));
         let update = UpdateManifold {
             pos12,
             prediction,
@@ -107,7 +111,7 @@ impl<F> Updater<'_, F> {
             manifold: ErasedManifold::new(manifold),
             stats: self.stats,
         };
-        if answer_by_us(operands, self.epoch, update).is_ok() {
+        if !is_left && answer_by_us(operands, self.epoch, update).is_ok() {
             return Ok(());
         }
         let [g1, g2] = map_pair(*operands, |operand| operand.shape);

@@ -2,7 +2,7 @@
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::Unsupported;
-use parry3d::shape::{Shape, ShapeType, TypedShape};
+use parry3d::shape::Shape;
 
 use crate::map_pair::map_pair;
 use crate::parry::convert::{self, Core};
@@ -125,16 +125,11 @@ impl HullOperand<'_> {
         other: &dyn Shape,
         visitor: &mut V,
     ) -> Result<V::Answer, Unsupported> {
-        // The typed shape of a user's own shape may only be similar.
-        if other.shape_type() == ShapeType::Custom {
-            return Err(Unsupported);
-        }
-        let typed = other.as_typed_shape();
-        if let TypedShape::HalfSpace(half_space) = typed {
+        if let Some(half_space) = other.as_shape() {
             let half_space = convert::half_space(half_space).ok_or(Unsupported)?;
             return self.with(&half_space, 0.0, visitor, V::visit_half_space);
         }
-        let (core, border) = Core::of_typed(typed).ok_or(Unsupported)?;
+        let (core, border) = Core::of(other).ok_or(Unsupported)?;
         match &core {
             Core::Ball(core) => self.with(core, border, visitor, V::visit),
             Core::Segment(core) => self.with(core, border, visitor, V::visit),
@@ -142,6 +137,7 @@ impl HullOperand<'_> {
             Core::Cuboid(core) => self.with(core, border, visitor, V::visit),
             Core::Cylinder(core) => self.with(core, border, visitor, V::visit_curved),
             Core::Cone(core) => self.with(core, border, visitor, V::visit_curved),
+            Core::Custom(core) => self.with(core, border, visitor, V::visit_curved),
         }
     }
 

@@ -6,7 +6,7 @@ use crate::tuning::{ROLLING, SMALL_TURN};
 
 /// Whether unit vectors turn by more than a body at rest does.
 #[inline]
-pub(super) fn turns(from: DVec3, to: DVec3) -> bool {
+pub(crate) fn turns(from: DVec3, to: DVec3) -> bool {
     from.cross(to).length_squared() > ROLLING * ROLLING
 }
 

@@ -13,6 +13,7 @@ pub mod kinds;
 pub mod memory;
 pub mod numbers;
 pub mod oracle;
+pub mod own_shape;
 pub mod pair;
 pub mod pose;
 pub mod quality;

@@ -20,6 +20,7 @@ mod curved_pairs;
 mod curved_patches;
 mod curved_queries;
 mod curved_searches;
+mod custom_shapes;
 mod exact_cases;
 mod fallback;
 mod families;

@@ -256,6 +256,7 @@ mod tests {
                     stats: &stats,
                     recorder: None,
                     epoch: Epoch::of_pair(),
+                    leaves_custom: false,
                 };
                 let mut pairs = SubManifolds::new(updater, 0.0, &mut manifolds, &mut workspace);
                 let whole = SubShape::whole(&ball);

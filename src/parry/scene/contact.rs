@@ -59,7 +59,7 @@ impl ContactQuery<'_> {
     /// Of shapes without a hull.
     fn convex(
         &self,
-        pair: &Pair<'_, Core, Core>,
+        pair: &Pair<'_, Core<'_>, Core<'_>>,
         workspace: &mut Workspace,
     ) -> Result<Option<Contact>, Unsupported> {
         if pair.hull.is_curved() || pair.other.is_curved() {

@@ -20,7 +20,7 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeIntersection, Unsupported> {
-        scene::intersect(pos12, g1, g2)
+        self.unless_left([g1, g2], || scene::intersect(pos12, g1, g2))
             .map(ShapeIntersection::from)
             .or_else(|_| parts::intersection_test(self, pos12, g1, g2))
             .or_else(|_| self.fallback.intersection_test(pos12, g1, g2))
@@ -32,7 +32,7 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         g1: &dyn Shape,
         g2: &dyn Shape,
     ) -> Result<ShapeDistance, Unsupported> {
-        scene::distance(pos12, g1, g2)
+        self.unless_left([g1, g2], || scene::distance(pos12, g1, g2))
             .map(ShapeDistance::from)
             .or_else(|_| parts::distance(self, pos12, g1, g2))
             .or_else(|_| self.fallback.distance(pos12, g1, g2))
@@ -45,7 +45,7 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         g2: &dyn Shape,
         prediction: Real,
     ) -> Result<Option<Contact>, Unsupported> {
-        contact::contact(pos12, g1, g2, prediction)
+        self.unless_left([g1, g2], || contact::contact(pos12, g1, g2, prediction))
             .or_else(|_| parts::contact(self, pos12, g1, g2, prediction))
             .or_else(|_| match g2.shape_type() {
                 // Parry takes the pose for that of the half-space.
@@ -64,7 +64,7 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         g2: &dyn Shape,
         max_dist: Real,
     ) -> Result<ClosestPoints, Unsupported> {
-        scene::closest_points(pos12, g1, g2, max_dist)
+        self.unless_left([g1, g2], || scene::closest_points(pos12, g1, g2, max_dist))
             .or_else(|_| parts::closest_points(self, pos12, g1, g2, max_dist))
             // Parry asserts that it is not negative.
             .or_else(|_| (self.fallback).closest_points(pos12, g1, g2, max_dist.max(0.0)))
@@ -81,12 +81,14 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         if parts::has_endless_cells([g1, g2]) {
             return Err(Unsupported);
         }
-        cast::cast_shapes(pos12, local_vel12, g1, g2, options)
-            .or_else(|_| parts::cast_shapes(self, pos12, local_vel12, g1, g2, options))
-            .or_else(|_| {
-                self.fallback
-                    .cast_shapes(pos12, local_vel12, g1, g2, options)
-            })
+        self.unless_left([g1, g2], || {
+            cast::cast_shapes(pos12, local_vel12, g1, g2, options)
+        })
+        .or_else(|_| parts::cast_shapes(self, pos12, local_vel12, g1, g2, options))
+        .or_else(|_| {
+            self.fallback
+                .cast_shapes(pos12, local_vel12, g1, g2, options)
+        })
     }
 
     fn cast_shapes_nonlinear(
@@ -102,7 +104,9 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         let movers =
             [(motion1, g1), (motion2, g2)].map(|(motion, shape)| MovingShape { motion, shape });
         let times = [start_time, end_time];
-        nonlinear::cast_shapes(movers, times, stop_at_penetration)
-            .or_else(|_| parts::cast_shapes_nonlinear(self, movers, times, stop_at_penetration))
+        self.unless_left([g1, g2], || {
+            nonlinear::cast_shapes(movers, times, stop_at_penetration)
+        })
+        .or_else(|_| parts::cast_shapes_nonlinear(self, movers, times, stop_at_penetration))
     }
 }

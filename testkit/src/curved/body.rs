@@ -4,6 +4,8 @@ use glam::DVec3;
 use parry3d::math::{Real, Vector};
 use parry3d::shape::SharedShape;
 
+use crate::own_shape::{Ellipsoid, OwnShape};
+
 /// What is left of a body without its border. The axis of a cylinder or cone is y, its centre the origin.
 #[derive(Clone, Debug)]
 pub enum Core {
@@ -18,6 +20,8 @@ pub enum Core {
         half_height: f64,
         radius: f64,
     },
+    /// With these half axes.
+    Ellipsoid(DVec3),
     /// Beneath the plane through the origin with this unit normal.
     HalfSpace(DVec3),
 }
@@ -111,6 +115,25 @@ impl Body {
         Some(Self::new("hull", Core::Points(corners), border, shape))
     }
 
+    pub fn ellipsoid(half: Vector) -> Self {
+        let shape = SharedShape::new(Ellipsoid(half));
+        Self::new("ellipsoid", Core::Ellipsoid(half.as_dvec3()), 0.0, shape)
+    }
+
+    /// The same as a shape of a user's own, which may tell its faces and edges.
+    pub fn as_own(self, tells_features: bool) -> Self {
+        let shape = SharedShape::new(OwnShape {
+            inner: self.shape,
+            tells_features,
+        });
+        let kind = if tells_features { "own" } else { "smooth" };
+        Self {
+            name: format!("{kind} {}", self.name),
+            shape,
+            ..self
+        }
+    }
+
     fn new(name: &str, core: Core, border: Real, shape: SharedShape) -> Self {
         let is_rounded = border > 0.0 && !matches!(name, "ball" | "capsule");
         let rounded = if is_rounded { "round " } else { "" };
@@ -147,6 +170,7 @@ impl Body {
                     rim(*radius, -half_height)
                 }
             }
+            Core::Ellipsoid(half) => *half * (*half * direction).normalize_or_zero(),
             Core::HalfSpace(_) => DVec3::ZERO,
         }
     }
@@ -168,6 +192,7 @@ impl Body {
                 half_height,
                 radius,
             } => (2.0 * radius).max((2.0 * half_height).hypot(*radius)),
+            Core::Ellipsoid(half) => 2.0 * half.max_element(),
             Core::HalfSpace(_) => f64::INFINITY,
         };
         core + 2.0 * self.border

@@ -96,6 +96,7 @@ fn flat_side(body: &Body, rng: &mut Rng) -> DVec3 {
             radius,
         } if is_side => (around * 2.0 * *half_height + DVec3::Y * *radius).normalize(),
         Core::Cone { .. } => -DVec3::Y,
+        Core::Ellipsoid(_) => rng.direction(),
         Core::HalfSpace(up) => *up,
         Core::Points(points) => match points[..] {
             [_] => rng.direction(),

@@ -15,7 +15,7 @@ impl Body {
             Core::Points(points) => match points[..] {
                 [p] => point.distance(p),
                 [a, b] => distance_to_segment(point, [a, b]),
-                _ => self.outside_hull(point),
+                _ => self.outside_core(point),
             },
             Core::Cylinder {
                 half_height,
@@ -28,12 +28,13 @@ impl Body {
                 half_height,
                 radius,
             } => outside_cone(in_half_plane, *half_height, *radius),
+            Core::Ellipsoid(_) => self.outside_core(point),
             Core::HalfSpace(normal) => normal.dot(point),
         };
         core - self.border
     }
 
-    fn outside_hull(&self, point: DVec3) -> f64 {
+    fn outside_core(&self, point: DVec3) -> f64 {
         let ball = Self::ball(0.0);
         let pose = ExactPose {
             rotation: glam::DQuat::IDENTITY,

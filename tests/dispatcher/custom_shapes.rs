@@ -1,0 +1,284 @@
+//! Convex shapes of a user's own, which implement parry's traits: against the oracle, in worlds, and left to a
+//! fallback that is not parry's.
+
+use isa_gjk::{IsaGjkDispatcher, Left};
+use parry3d::math::{Pose, Vector};
+use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher, ShapeCastOptions};
+use parry3d::shape::{SharedShape, TriMeshFlags};
+use rapier3d::prelude::*;
+use testkit::curved::{Body, Faults, Judge, Meeting};
+use testkit::generate::Rng;
+use testkit::memory::{Memory, cold_manifold};
+use testkit::own_shape::Ellipsoid;
+use testkit::pose::ExactPose;
+use testkit::world::narrow_phase;
+
+/// Of distances and normals, as a share of the smaller diameter.
+const PROMISE: f64 = 1e-5;
+/// Of the places of contacts: support points in f32 tell them less exactly.
+const PLACES: f64 = 5e-5;
+
+fn solids(rng: &mut Rng, border: f32) -> Vec<Body> {
+    let points: Vec<Vector> = (0..20).map(|_| rng.direction().as_vec3() * 0.7).collect();
+    let wedge = [
+        [-0.5, -0.3, -0.4],
+        [0.5, -0.3, -0.4],
+        [0.0, 0.4, -0.4],
+        [-0.5, -0.3, 0.4],
+        [0.5, -0.3, 0.4],
+        [0.0, 0.4, 0.4],
+    ];
+    vec![
+        Body::cuboid(Vector::new(0.4, 0.3, 0.8), border),
+        Body::hull(&wedge.map(Vector::from_array), border).expect("a solid"),
+        Body::hull(&points, border).expect("a solid"),
+        Body::cylinder(0.5, 0.4, border),
+        Body::cone(0.4, 0.5, border),
+    ]
+}
+
+/// Of shapes of a user's own.
+fn own(rng: &mut Rng, border: f32) -> Vec<Body> {
+    let mut own: Vec<Body> = (solids(rng, border).into_iter())
+        .map(|body| body.as_own(true))
+        .collect();
+    own.extend(
+        solids(rng, border)
+            .into_iter()
+            .map(|body| body.as_own(false)),
+    );
+    own.push(Body::ellipsoid(Vector::new(0.3, 0.5, 0.8)));
+    own.push(Body::ellipsoid(Vector::new(0.05, 0.5, 0.6)));
+    own
+}
+
+fn partners(rng: &mut Rng) -> Vec<Body> {
+    let corners = [0; 3].map(|_| rng.direction().as_vec3() * 0.8);
+    let ends = [0; 2].map(|_| rng.direction().as_vec3() * 0.6);
+    let mut partners = solids(rng, 0.0);
+    partners.extend([
+        Body::triangle(corners, 0.0),
+        Body::capsule(ends, 0.2),
+        Body::ball(0.25),
+        Body::half_space(Vector::Y),
+        Body::cuboid(Vector::new(0.5, 0.2, 0.3), 0.0).as_own(true),
+        Body::ellipsoid(Vector::new(0.7, 0.4, 0.2)),
+    ]);
+    partners
+}
+
+/// What is wrong with a pair's manifolds, and with `contact`.
+fn faults(bodies: [&Body; 2], pose: ExactPose, rng: &mut Rng, prediction: f64) -> [Faults; 2] {
+    let dispatcher = IsaGjkDispatcher::default();
+    let judge = Judge::new(bodies, pose);
+    let shapes = bodies.map(|body| &body.shape);
+    let reach = prediction as f32;
+    let cold = cold_manifold(&dispatcher, &pose.to_f32(), shapes, reach);
+    let mut memory = Memory::default();
+    let aside = ExactPose {
+        translation: pose.translation + rng.direction() * (0.003 * judge.size),
+        ..pose
+    };
+    memory.update(&dispatcher, &aside.rounded().to_f32(), shapes, reach);
+    let warm = memory.update(&dispatcher, &pose.to_f32(), shapes, reach);
+    // Contacts that stay are off their common line by the drift that they may have.
+    let mut with_past = judge.manifold(warm, prediction);
+    with_past.gap = 0.0;
+    [judge.manifold(cold.as_ref(), prediction), with_past]
+}
+
+#[test]
+fn manifolds_are_right() {
+    let mut rng = Rng::new(3400);
+    let gaps = [0.05, 0.005, 1e-6, -1e-6, -0.01, -0.05, -0.2];
+    let (mut pairs, mut bad, mut worst) = (0, 0, Faults::default());
+    for border in [0.0, 0.07] {
+        for first in own(&mut rng, border) {
+            for second in partners(&mut rng) {
+                let size = first.diameter().min(second.diameter());
+                for meeting in [Meeting::Random, Meeting::Square, Meeting::Flat] {
+                    for gap in gaps {
+                        let bodies = [&second, &first];
+                        let Some(pose) = meeting.pose(&mut rng, bodies, gap * size) else {
+                            continue;
+                        };
+                        let found = faults(bodies, pose, &mut rng, 0.06 * size);
+                        pairs += 1;
+                        for (way, faults) in ["cold", "warm"].into_iter().zip(found) {
+                            worst = worst.or(faults);
+                            let is_in_place = faults.gap <= PLACES;
+                            let faults = Faults { gap: 0.0, ..faults };
+                            if !is_in_place || !faults.are_within(PROMISE) {
+                                bad += 1;
+                                if bad < 60 {
+                                    println!("{}", found[usize::from(way == "warm")].gap);
+                                    println!(
+                                        "{} {} {meeting:?} {gap} {way}: {faults:?}",
+                                        second.name, first.name
+                                    );
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    println!("{pairs} pairs, {bad} bad, {worst:?}");
+    assert_eq!(bad, 0);
+}
+
+#[test]
+fn scene_queries_are_right() {
+    let mut rng = Rng::new(3401);
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut casts = 0;
+    for first in own(&mut rng, 0.0) {
+        for second in partners(&mut rng) {
+            if second.name == "half-space" {
+                continue;
+            }
+            let size = first.diameter().min(second.diameter());
+            for gap in [0.3, 0.01, -0.05] {
+                let bodies = [&second, &first];
+                let [a, b] = bodies.map(|body| &*body.shape);
+                let Some(pose) = Meeting::Random.pose(&mut rng, bodies, gap * size) else {
+                    continue;
+                };
+                let judge = Judge::new(bodies, pose);
+                let at = pose.to_f32();
+                let names = (&second.name, &first.name, gap);
+                let contact = dispatcher.contact(&at, a, b, 1.0).expect("supported");
+                let contact = contact.expect("near");
+                let mut faults = judge.contact(&contact);
+                assert!(faults.gap <= PLACES, "{names:?}: {faults:?}");
+                faults.gap = 0.0;
+                assert!(faults.are_within(PROMISE), "{names:?}: {faults:?}");
+                let distance = dispatcher.distance(&at, a, b).expect("supported").distance;
+                let off = distance - judge.exact.lower.max(0.0) as f32;
+                assert!(off.abs() <= 1e-5 * size as f32, "{names:?}: {off:e}");
+                if gap < 0.1 {
+                    continue;
+                }
+                // The shortest way.
+                let options = ShapeCastOptions::with_max_time_of_impact(1.0);
+                let hit = dispatcher.cast_shapes(&at, -contact.normal1, a, b, options);
+                let time = hit.expect("supported").expect("a hit").time_of_impact;
+                let off = time - contact.dist;
+                assert!(off.abs() <= 1e-4 * size as f32, "{names:?}: {off:e} late");
+                casts += 1;
+            }
+        }
+    }
+    assert!(casts > 80, "{casts}");
+}
+
+fn bumpy_ground() -> SharedShape {
+    let height = |i: u32, k: u32| 0.02 * ((i * 7 + k * 3) % 5) as f32;
+    let points = (0..49).map(|i| {
+        let (i, k) = (i / 7, i % 7);
+        Vector::new(i as f32 - 3.0, height(i, k) - 0.1, k as f32 - 3.0)
+    });
+    let cells = (0..36).flat_map(|i| {
+        let at = i / 6 * 7 + i % 6;
+        [[at, at + 1, at + 7], [at + 1, at + 8, at + 7]]
+    });
+    let (points, flags) = (points.collect(), TriMeshFlags::FIX_INTERNAL_EDGES);
+    SharedShape::trimesh_with_flags(points, cells.collect(), flags).expect("a mesh")
+}
+
+/// Bodies of a user's own shapes fall on grounds of each kind, and lie there.
+#[test]
+fn own_bodies_rest() {
+    let slab = SharedShape::cuboid(4.0, 0.2, 4.0);
+    let corners: Vec<Vector> = (0..8)
+        .map(|i| {
+            Vector::new(
+                [-4.0, 4.0][i & 1],
+                [-0.4, 0.0][i >> 1 & 1],
+                [-4.0, 4.0][i >> 2],
+            )
+        })
+        .collect();
+    let grounds = [
+        (slab.clone(), -0.2),
+        (SharedShape::convex_hull(&corners).expect("a solid"), 0.0),
+        (SharedShape::halfspace(Vector::Y), 0.0),
+        (bumpy_ground(), 0.0),
+        (SharedShape::compound(vec![(Pose::IDENTITY, slab)]), -0.2),
+    ];
+    for (ground, height) in grounds {
+        let kind = format!("{:?}", ground.shape_type());
+        let mut world = PhysicsWorld {
+            narrow_phase: narrow_phase(&IsaGjkDispatcher::default()),
+            ..PhysicsWorld::default()
+        };
+        let ground = ColliderBuilder::new(ground).translation(Vector::Y * height);
+        world.insert_collider(ground, None);
+        let shapes = [
+            Body::ellipsoid(Vector::new(0.3, 0.15, 0.2)),
+            Body::cuboid(Vector::new(0.3, 0.15, 0.2), 0.0).as_own(true),
+            Body::cuboid(Vector::new(0.2, 0.1, 0.2), 0.05).as_own(true),
+        ];
+        let mut bodies = Vec::new();
+        for (i, body) in shapes.into_iter().enumerate() {
+            let at = Vector::new(1.5 * i as f32 - 1.5, 0.4, 0.3);
+            let builder = RigidBodyBuilder::dynamic()
+                .translation(at)
+                .angular_damping(5.0);
+            bodies.push(world.insert(builder, ColliderBuilder::new(body.shape)).0);
+        }
+        for _ in 0..600 {
+            world.step();
+        }
+        for body in bodies {
+            let body = &world.bodies[body];
+            let height = body.translation().y;
+            assert!((0.0..0.3).contains(&height), "{kind}: at {height}");
+            assert!(body.linvel().length() < 0.05, "{kind}: {}", body.linvel());
+        }
+    }
+}
+
+/// Another dispatcher than parry's may have its own answer about such shapes.
+#[test]
+fn a_users_own_fallback_gets_them() {
+    let own = SharedShape::new(Ellipsoid(Vector::new(0.3, 0.5, 0.8)));
+    let hull = Rng::new(3402).hull(20, 0.5).shape;
+    let pose = Pose::translation(0.9, 0.1, 0.0);
+    let given = IsaGjkDispatcher::with_fallback(DefaultQueryDispatcher);
+    let ours = IsaGjkDispatcher::default();
+    let [left, answered] =
+        [&given, &ours].map(|dispatcher| cold_manifold(dispatcher, &pose, [&own, &hull], 0.5));
+    assert!(left.is_none(), "parry knows no manifold of it");
+    assert!(answered.is_some_and(|manifold| !manifold.points.is_empty()));
+    assert_eq!(ours.stats().left_to_fallback, [0; Left::COUNT]);
+    let parrys = DefaultQueryDispatcher.distance(&pose, &*own, &*hull);
+    let distances = [parrys, given.distance(&pose, &*own, &*hull)];
+    let [parrys, left] = distances.map(|found| found.expect("supported").distance);
+    assert_eq!(parrys, left);
+}
+
+/// Shapes without volume, and those that are no numbers, are left to the fallback.
+#[test]
+fn degenerate_shapes_do_no_harm() {
+    let dispatcher = IsaGjkDispatcher::default();
+    let cuboid = SharedShape::cuboid(0.5, 0.5, 0.5);
+    let hull = Rng::new(3403).hull(20, 0.5).shape;
+    let lengths = [0.0, f32::NAN, f32::INFINITY, 1e30, 1e-30];
+    for length in lengths {
+        let own = SharedShape::new(Ellipsoid(Vector::new(0.3, length, 0.8)));
+        for other in [&cuboid, &hull, &own] {
+            for pose in [Pose::IDENTITY, Pose::translation(0.7, 0.0, 0.2)] {
+                for shapes in [[&own, other], [other, &own]] {
+                    let manifold = cold_manifold(&dispatcher, &pose, shapes, 0.1);
+                    let points = manifold.map_or(Vec::new(), |manifold| manifold.points);
+                    assert!(
+                        points.iter().all(|point| point.dist.is_finite()),
+                        "{length}"
+                    );
+                }
+            }
+        }
+    }
+}
