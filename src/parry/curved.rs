@@ -19,11 +19,9 @@ use crate::primitive::Revolved;
 /// Whether a shape is a cylinder or a cone, or may be curved since it is a user's own.
 fn is_curved(shape: &dyn Shape) -> bool {
     use ShapeType::{Cone, Custom, Cylinder, RoundCone, RoundCylinder};
-    match shape.shape_type() {
-        Cylinder | Cone | RoundCylinder | RoundCone => true,
-        Custom => has_support_map(shape),
-        _ => false,
-    }
+    let kind = shape.shape_type();
+    matches!(kind, Cylinder | Cone | RoundCylinder | RoundCone)
+        || kind == Custom && has_support_map(shape)
 }
 
 /// Whether a shape is a hull or may be curved: those of which one makes a pair ours.
@@ -71,7 +69,7 @@ fn update_curved(
     match second {
         Core::Cylinder(second) => pair.with(first, second),
         Core::Cone(second) => pair.with(first, second),
-        Core::Custom(second) => pair.with_both(first, second),
+        Core::Custom(second) => pair.with_custom(first, second),
         _ => Err(Unsupported),
     }
 }
@@ -91,7 +89,7 @@ fn update_on_half_space(
         Some((Core::Cone(solid), border)) if border > 0.0 => {
             on_half_space(order, half_space, (&solid, border), update)
         }
-        Some((Core::Custom(solid), border)) => {
+        Some((Core::Custom(solid), border)) if !update.leaves_custom => {
             on_half_space(order, half_space, (&solid, border), update)
         }
         _ => Err(Unsupported),
@@ -133,8 +131,21 @@ impl PairUpdate<'_, '_> {
             Core::Cuboid(first) => self.with_both(first, second),
             Core::Cylinder(first) => self.with_both(first, second),
             Core::Cone(first) => self.with_both(first, second),
-            Core::Custom(_) => self.with_both(first, second),
+            Core::Custom(_) => self.with_custom(first, second),
         }
+    }
+
+    /// One of the shapes is a user's own.
+    #[cold]
+    fn with_custom(
+        &mut self,
+        first: &Core<'_>,
+        second: &impl SurfacePieces,
+    ) -> Result<(), Unsupported> {
+        if self.update.leaves_custom {
+            return Err(Unsupported);
+        }
+        self.with_both(first, second)
     }
 
     fn with_both(

@@ -108,7 +108,12 @@ pub(crate) trait PairVisitor: Sized {
         Err(Unsupported)
     }
 
-    /// The other shape is a cylinder or a cone.
+    /// Whether the fallback gets the pairs of a user's own shapes.
+    fn leaves_custom(&self) -> bool {
+        false
+    }
+
+    /// The other shape is a cylinder or a cone, or a user's own.
     fn visit_curved<B: SurfacePieces>(
         &mut self,
         pair: &Pair<'_, B>,

@@ -6,7 +6,6 @@ use parry3d::query::{ContactManifold, PersistentQueryDispatcher, Unsupported};
 use crate::map_pair::map_pair;
 use crate::parry::constraints::Constraints;
 use crate::parry::curved::update_without_hull;
-use crate::parry::custom::is_custom;
 use crate::parry::hull_cache::epoch::Epoch;
 use crate::parry::manifold::{ErasedManifold, UpdateManifold};
 use crate::parry::operand::Operand;
@@ -103,15 +102,15 @@ impl<F> Updater<'_, F> {
         C: Default + Copy + Send + Sync,
         F: PersistentQueryDispatcher<M, C>,
     {
-        let is_left = self.leaves_custom && operands.iter().any(|operand| is_custom(operand.shape));
         let update = UpdateManifold {
             pos12,
             prediction,
             constraints,
             manifold: ErasedManifold::new(manifold),
             stats: self.stats,
+            leaves_custom: self.leaves_custom,
         };
-        if !is_left && answer_by_us(operands, self.epoch, update).is_ok() {
+        if answer_by_us(operands, self.epoch, update).is_ok() {
             return Ok(());
         }
         let [g1, g2] = map_pair(*operands, |operand| operand.shape);

@@ -137,6 +137,7 @@ impl HullOperand<'_> {
             Core::Cuboid(core) => self.with(core, border, visitor, V::visit),
             Core::Cylinder(core) => self.with(core, border, visitor, V::visit_curved),
             Core::Cone(core) => self.with(core, border, visitor, V::visit_curved),
+            Core::Custom(_) if visitor.leaves_custom() => Err(Unsupported),
             Core::Custom(core) => self.with(core, border, visitor, V::visit_curved),
         }
     }

@@ -25,6 +25,7 @@ pub(crate) fn is_custom(shape: &dyn Shape) -> bool {
 }
 
 /// Whether it is one with a support mapping.
+#[cold]
 pub(crate) fn has_support_map(shape: &dyn Shape) -> bool {
     is_custom(shape) && SupportMaps::of(shape).is_some()
 }

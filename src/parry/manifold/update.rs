@@ -31,6 +31,8 @@ pub(crate) struct UpdateManifold<'a> {
     pub constraints: &'a [Constraints<'a>; 2],
     pub manifold: ErasedManifold<'a>,
     pub stats: &'a SharedStats,
+    /// Whether the fallback gets the pairs of a user's own shapes.
+    pub leaves_custom: bool,
 }
 
 impl PairVisitor for UpdateManifold<'_> {
@@ -93,6 +95,10 @@ impl PairVisitor for UpdateManifold<'_> {
         let stage = update.run(clip, still_cache, &mut cost);
         self.stats.record(stage, &cost);
         Ok(())
+    }
+
+    fn leaves_custom(&self) -> bool {
+        self.leaves_custom
     }
 
     fn visit_curved<B: SurfacePieces>(
