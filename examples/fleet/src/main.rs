@@ -27,6 +27,7 @@ use rayon::prelude::*;
 use record::Record;
 use shard::Shard;
 use summary::Summary;
+use testkit::console::print;
 use world::Bin;
 
 /// Steps many independent worlds of convex parts in bins on all cores
@@ -101,8 +102,7 @@ fn main() -> ExitCode {
 
 fn merge(files: &[PathBuf]) -> Result<(), Box<dyn Error>> {
     let summary = Summary::of(&record::read_all(files)?)?;
-    println!("{summary}");
-    Ok(())
+    Ok(print(&format!("{summary}\n"))?)
 }
 
 impl Run {
@@ -128,13 +128,13 @@ impl Run {
             write_all(&records, BufWriter::new(file))?;
         }
         let steps: u64 = records.iter().map(|record| u64::from(record.steps)).sum();
-        println!(
-            "{} worlds, {:.0} steps per second on {} threads",
+        let told = format!(
+            "{} worlds, {:.0} steps per second on {} threads\n",
             records.len(),
             steps as f64 / seconds,
             rayon::current_num_threads()
         );
-        Ok(())
+        Ok(print(&told)?)
     }
 
     /// One world from its start to its end.
