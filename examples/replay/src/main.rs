@@ -1,11 +1,12 @@
 //! Records a scene of `compare` to one HTML file that plays in a browser:
 //! `cargo run --release -p replay -- --scene stack --out replay.html`. With `--film` it writes
-//! both narrow phases side by side, as one animated picture.
+//! scenes side by side, with either narrow phase, as one animated picture.
 
 mod film;
 mod mesh;
 mod pair;
 mod tape;
+mod view;
 
 use std::error::Error;
 use std::fs;
@@ -31,9 +32,9 @@ const TAPE: &str = "\"TAPE\"";
 #[derive(Parser)]
 #[command(name = "replay")]
 struct Options {
-    /// What is in the world, as for `compare`
-    #[arg(long, default_value_t = Scene::Drum)]
-    scene: Scene,
+    /// What is in the world, as for `compare`; `--film` takes several, with commas between them
+    #[arg(long, value_delimiter = ',', default_values_t = [Scene::Drum])]
+    scene: Vec<Scene>,
 
     /// Whose narrow phase it runs with
     #[arg(long, value_enum, default_value_t = Dispatcher::Ours)]
@@ -42,6 +43,10 @@ struct Options {
     /// Dynamic bodies [default: 128 to 1000, by scene]
     #[arg(long, value_parser = value_parser!(u32).range(1..=10_000))]
     bodies: Option<u32>,
+
+    /// The largest extent of the largest body in metres, in scenes of small bodies [default: 5 to 40 cm, by scene]
+    #[arg(long, value_parser = positive::<f32>)]
+    size: Option<f32>,
 
     /// Vertices of a hull
     #[arg(long, default_value_t = 100, value_parser = value_parser!(u32).range(4..=2000))]
@@ -65,7 +70,7 @@ struct Options {
 
     /// A recording of pairs, to see what becomes of one: its first shape is fixed, the second one free,
     /// without gravity
-    #[arg(long, conflicts_with_all = ["scene", "bodies", "vertices", "real", "film"])]
+    #[arg(long, conflicts_with_all = ["scene", "bodies", "size", "vertices", "real", "film"])]
     pair: Option<PathBuf>,
 
     /// Which pair of the recording, counted from 0
@@ -76,14 +81,10 @@ struct Options {
     #[arg(long, default_value = "replay.html")]
     out: PathBuf,
 
-    /// Write the scene with rapier's narrow phase and with this crate's, side by side, to this
-    /// animated SVG picture instead
+    /// Write the scenes side by side, above with rapier's narrow phase and below with this crate's, to
+    /// this animated SVG picture instead. What sleeps is grey
     #[arg(long, conflicts_with_all = ["dispatcher", "out"])]
     film: Option<PathBuf>,
-
-    /// Metres from the left to the right of the picture
-    #[arg(long, default_value_t = 8.0, value_parser = positive::<f32>, requires = "film")]
-    extent: f32,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -95,8 +96,8 @@ enum Dispatcher {
 }
 
 impl Options {
-    fn params(&self) -> SceneParams {
-        let hulls = match self.scene.hulls() {
+    fn params(&self, scene: Scene) -> SceneParams {
+        let hulls = match scene.hulls() {
             Hulls::Any | Hulls::Upright if self.real => HullSource::Real,
             Hulls::Any | Hulls::None => HullSource::Random {
                 vertices: self.vertices,
@@ -107,8 +108,9 @@ impl Options {
                 sides: (self.vertices / 2).max(3),
             },
         };
-        let bodies = self.bodies.unwrap_or(self.scene.default_bodies());
+        let bodies = self.bodies.unwrap_or(scene.default_bodies());
         SceneParams {
+            size: scene.default_size().map(|size| self.size.unwrap_or(size)),
             seed: self.seed,
             ..SceneParams::new(hulls, bodies)
         }
@@ -127,8 +129,16 @@ impl Options {
         seconds_per_frame
     }
 
-    fn title(&self, params: &SceneParams) -> String {
-        let what = match self.scene.hulls() {
+    /// The only scene of a page.
+    fn one_scene(&self) -> Result<Scene, &'static str> {
+        match self.scene[..] {
+            [scene] => Ok(scene),
+            _ => Err("a page shows one scene: only --film takes several"),
+        }
+    }
+
+    fn title(&self, scene: Scene, params: &SceneParams) -> String {
+        let what = match scene.hulls() {
             Hulls::None => String::new(),
             _ => format!(", {}", params.hulls),
         };
@@ -136,8 +146,7 @@ impl Options {
             Dispatcher::Ours => "isa-gjk",
             Dispatcher::Default => "rapier's default",
         };
-        let Self { scene, pair, .. } = self;
-        if let Some(path) = pair {
+        if let Some(path) = &self.pair {
             return format!("pair {} of {}, {dispatcher}", self.number, path.display());
         }
         format!("{scene}: {} bodies{what}, {dispatcher}", params.bodies)
@@ -146,10 +155,9 @@ impl Options {
 
 fn main() -> ExitCode {
     let options = Options::parse();
-    let params = options.params();
     let written = match &options.film {
-        Some(out) => write_film(&options, &params, out),
-        None => write_page(&options, &params),
+        Some(out) => write_film(&options, out),
+        None => write_page(&options),
     };
     match written {
         Ok(()) => ExitCode::SUCCESS,
@@ -160,20 +168,22 @@ fn main() -> ExitCode {
     }
 }
 
-fn write_page(options: &Options, params: &SceneParams) -> Result<(), Box<dyn Error>> {
+fn write_page(options: &Options) -> Result<(), Box<dyn Error>> {
+    let scene = options.one_scene()?;
+    let params = options.params(scene);
     let dispatcher = match options.dispatcher {
         Dispatcher::Ours => Some(IsaGjkDispatcher::default()),
         Dispatcher::Default => None,
     };
     let mut world = match &options.pair {
         Some(path) => pair::world(path, options.number, dispatcher)?,
-        None => scenes::build(options.scene, params, dispatcher)?,
+        None => scenes::build(scene, &params, dispatcher)?,
     };
     let mut tape = Tape::new(&world);
     let seconds_per_frame = options.run(&mut world, |world| tape.record(world));
 
     let header = json!({
-        "title": options.title(params),
+        "title": options.title(scene, &params),
         "framesPerSecond": seconds_per_frame.recip(),
         "tape": tape.header(),
     });
@@ -187,19 +197,23 @@ fn write_page(options: &Options, params: &SceneParams) -> Result<(), Box<dyn Err
     Ok(print(&format!("{} frames\n", tape.len()))?)
 }
 
-fn write_film(options: &Options, params: &SceneParams, out: &Path) -> Result<(), Box<dyn Error>> {
+fn write_film(options: &Options, out: &Path) -> Result<(), Box<dyn Error>> {
     let both = [
         ("rapier's default", None),
         ("isa-gjk", Some(IsaGjkDispatcher::default())),
     ];
-    let mut reels = Vec::new();
-    for (title, dispatcher) in both {
-        let mut world = scenes::build(options.scene, params, dispatcher)?;
-        let mut reel = Reel::new(title, options.extent);
-        options.run(&mut world, |world| reel.record(world));
-        reels.push(reel);
+    let mut rows = Vec::new();
+    for (name, dispatcher) in both {
+        let mut row = Vec::new();
+        for &scene in &options.scene {
+            let mut world = scenes::build(scene, &options.params(scene), dispatcher.clone())?;
+            let mut reel = Reel::new(format!("{scene}: {name}"), &world);
+            options.run(&mut world, |world| reel.record(world));
+            row.push(reel);
+        }
+        rows.push(row);
     }
-    write(out, &film::picture(&reels, options.seconds))
+    write(out, &film::picture(&rows, options.seconds))
 }
 
 fn write(out: &Path, text: &str) -> Result<(), Box<dyn Error>> {
