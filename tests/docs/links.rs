@@ -85,7 +85,7 @@ fn links_lead_to_files_and_headings_of_this_repository() {
     assert!(lost.is_empty(), "lead nowhere:\n{}", lost.join("\n"));
 }
 
-/// The package has them all.
+/// Most are in the package.
 #[test]
 fn every_picture_is_shown() {
     let documents = documents();
