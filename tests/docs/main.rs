@@ -14,7 +14,7 @@ fn root(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// Files below a folder with this extension, from the root on, with their text, in order.
+/// Files below a folder with this extension, in order: their paths from the root on, with `/` on all systems, and texts.
 fn files(folder: &str, extension: &str) -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut folders = vec![root(folder)];
@@ -26,7 +26,7 @@ fn files(folder: &str, extension: &str) -> Vec<(String, String)> {
             } else if path.extension().is_some_and(|e| e == extension) {
                 let text = fs::read_to_string(&path).expect("a text file");
                 let path = path.strip_prefix(root("")).expect("a file of ours");
-                found.push((path.display().to_string(), text));
+                found.push((path.display().to_string().replace('\\', "/"), text));
             }
         }
     }
