@@ -16,7 +16,8 @@ pub fn pair(path: &Path, number: usize) -> Result<RecordedPair, String> {
     let text = fs::read_to_string(path).map_err(|error| cannot(&error))?;
     let pairs = recording::read(&text).map_err(|error| cannot(&error))?;
     let count = pairs.len();
-    pairs.into_iter().nth(number).ok_or_else(|| {
-        format!("{path_name} has no pair of number {number}: {count} in all, counted from 0")
-    })
+    pairs
+        .into_iter()
+        .nth(number)
+        .ok_or_else(|| format!("{path_name} has no pair {number}: it has {count}, counted from 0"))
 }
