@@ -3,7 +3,7 @@
 use glam::DVec3;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{Contact, ShapeCastHit, ShapeCastOptions, ShapeCastStatus, Unsupported};
-use parry3d::shape::Shape;
+use parry3d::shape::{HalfSpace, Shape};
 
 use crate::curved::SurfacePieces;
 use crate::parry::pair::{Pair, PairVisitor};
@@ -34,6 +34,7 @@ pub(crate) fn cast_shapes(
         options,
     };
     let shapes = [shape_1, shape_2];
+    no_half_space(shapes)?;
     let found = visit::shapes(shape_1, shape_2, cast)
         .or_else(|_| convex::visit(shapes, |pair, _| Ok(cast.cast(pair))))?;
     match found {
@@ -41,6 +42,15 @@ pub(crate) fn cast_shapes(
         Meeting::Hit(hit) => Ok(Some(hit)),
         Meeting::Overlap { size } => cast.overlap(shapes, size),
     }
+}
+
+/// Casts at half-spaces are left to the fallback before a hull is looked up, which takes longer than such a cast.
+pub(super) fn no_half_space(shapes: [&dyn Shape; 2]) -> Result<(), Unsupported> {
+    let is_half_space = |shape: &&dyn Shape| shape.as_shape::<HalfSpace>().is_some();
+    if shapes.iter().any(is_half_space) {
+        return Err(Unsupported);
+    }
+    Ok(())
 }
 
 #[derive(Clone, Copy)]

@@ -12,7 +12,7 @@ use crate::gjk::SeparatingAxis;
 use crate::parry::composite::scene::MovingShape;
 use crate::parry::pair::{Pair, PairVisitor};
 use crate::parry::scene::caller::{CallerProximity, KernelFrame};
-use crate::parry::scene::cast::hit;
+use crate::parry::scene::cast::{hit, no_half_space};
 use crate::parry::scene::convex;
 use crate::parry::visit;
 use crate::parry::workspace::Workspace;
@@ -34,6 +34,7 @@ pub(crate) fn cast_shapes(
     stop_at_penetration: bool,
 ) -> Result<Option<ShapeCastHit>, Unsupported> {
     let [shape_1, shape_2] = movers.map(|mover| mover.shape);
+    no_half_space([shape_1, shape_2])?;
     let cast = NonlinearCast {
         motions: movers.map(|mover| Motion::new(mover.motion)),
         times,
