@@ -6,10 +6,13 @@ use glam::{DVec3, Vec3};
 use crate::map_pair::map_pair;
 use crate::pose::RelativePose;
 use crate::simd::f32x4;
-use crate::tolerance::{COPLANAR, FLAT_SIDE, INSET_ROUNDING};
+use crate::tolerance::{COPLANAR, FLAT_SIDE, INSET_ROUNDING, PARALLEL_EDGES};
 use crate::tuning::SQUARE;
 
 const CORNERS: usize = 8;
+
+/// How many separating axes two boxes have: three and three along their edges, and nine across an edge of both.
+const AXES: usize = 15;
 
 /// A box.
 #[derive(Clone, Debug)]
@@ -22,6 +25,16 @@ pub struct OrientedBox {
     /// The axes in f32, and coordinate by coordinate.
     rounded: [Vec3; 3],
     columns: [f32x4; 3],
+}
+
+/// What spans the facet of the Minkowski difference of two boxes that a separating axis is the normal of.
+pub enum BoxFacet {
+    /// A face of the first box.
+    FirstFace,
+    /// A face of the second box.
+    SecondFace,
+    /// An edge of both, along these directions, each in the frame of its box.
+    Edges([DVec3; 2]),
 }
 
 impl OrientedBox {
@@ -58,11 +71,7 @@ impl OrientedBox {
     /// compared in f64.
     #[inline(never)]
     pub fn overlap_by(&self, other: &Self, pose: &RelativePose, least: f64, size: f64) -> bool {
-        let pair = BoxPair {
-            boxes: [self, other],
-            pose,
-            offset: pose.point_to_1(other.center) - self.center,
-        };
+        let pair = BoxPair::new([self, other], pose);
         // Depths are sums of some forty roundings.
         let margin = 4.0 * INSET_ROUNDING * size;
         let mut unsure = pair.shallow_axes(least as f32, margin as f32);
@@ -78,6 +87,30 @@ impl OrientedBox {
         }
         true
     }
+
+    /// The separating axis along which the second box, at a pose, overlaps the first one least: the unit normal of the
+    /// facet from the first to the second, and what spans it.
+    #[inline(never)]
+    pub fn least_overlap(&self, other: &Self, pose: &RelativePose) -> Option<(DVec3, BoxFacet)> {
+        let pair = BoxPair::new([self, other], pose);
+        let mut least = f64::INFINITY;
+        let mut found = None;
+        for number in 0..AXES {
+            let axis = pair.axis(number);
+            let length_squared = axis.length_squared();
+            // Nearly parallel edges span no facet.
+            if length_squared > PARALLEL_EDGES {
+                let length = length_squared.sqrt();
+                let depth = pair.depth_along(axis) / length;
+                if depth < least {
+                    least = depth;
+                    found = Some((axis / length, number));
+                }
+            }
+        }
+        let (axis, number) = found?;
+        Some((axis * axis.dot(pair.offset).signum(), pair.facet(number)))
+    }
 }
 
 struct BoxPair<'a> {
@@ -88,7 +121,17 @@ struct BoxPair<'a> {
     offset: DVec3,
 }
 
-impl BoxPair<'_> {
+impl<'a> BoxPair<'a> {
+    #[inline]
+    fn new(boxes: [&'a OrientedBox; 2], pose: &'a RelativePose) -> Self {
+        let offset = pose.point_to_1(boxes[1].center) - boxes[0].center;
+        Self {
+            boxes,
+            pose,
+            offset,
+        }
+    }
+
     /// A bit for each separating axis along which the depth may be less than `least`. Errors are below `margin`.
     #[inline]
     fn shallow_axes(&self, least: f32, margin: f32) -> u32 {
@@ -128,6 +171,16 @@ impl BoxPair<'_> {
             0..3 => of_1(number),
             3..6 => of_2(number),
             _ => of_1(number / 3 - 2).cross(of_2(number)),
+        }
+    }
+
+    /// What spans the facet along a separating axis.
+    fn facet(&self, number: usize) -> BoxFacet {
+        let [first, second] = self.boxes;
+        match number {
+            0..3 => BoxFacet::FirstFace,
+            3..6 => BoxFacet::SecondFace,
+            _ => BoxFacet::Edges([first.axes[number / 3 - 2], second.axes[number % 3]]),
         }
     }
 

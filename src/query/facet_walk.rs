@@ -5,11 +5,11 @@ use std::ops::ControlFlow;
 use glam::DVec3;
 
 use super::certificate::flush::FlushFaces;
-use super::certificate::{facet, vertex_edge};
+use super::certificate::{boxes, facet, vertex_edge};
 use super::feature::{self, Feature};
 use super::gauss_map;
 use super::pipeline::Found;
-use super::types::{Answer, Query, Start};
+use super::types::{Answer, Proximity, Query, Start};
 use super::verdict::{FacetEdge, Verdict};
 use crate::map_pair::map_pair;
 use crate::stats::Stage;
@@ -117,11 +117,10 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
             Verdict::Certified(proximity) => {
                 return ControlFlow::Break(Some((Answer::Near(*proximity), walk.stage)));
             }
-            Verdict::Undecided(candidate, inset) => {
-                let candidate = (candidate, *inset);
-                let found = self.find_depth(candidate, walk.flush, walk.stage, walk.from);
-                return ControlFlow::Break(found);
-            }
+            Verdict::Undecided(candidate, inset) => match self.nearest_facet(walk) {
+                Some(nearest) => nearest,
+                None => return ControlFlow::Break(self.end_walk((candidate, *inset), walk)),
+            },
             Verdict::OutsideEdge(side) => self.cross_edge(side, walk),
             Verdict::NotSupporting(vertex, normal) => (
                 gauss_map::facet_at_vertex(self.cso, vertex, *normal),
@@ -148,6 +147,20 @@ impl<A: Polytope, B: Polytope> Query<'_, '_, A, B> {
         walk.steps_left -= 1;
         walk.stage = Stage::FacetWalk;
         ControlFlow::Continue(())
+    }
+
+    /// The facet that is nearest, if the shapes tell it at once, and if it is another one than the current facet.
+    #[inline]
+    fn nearest_facet(&mut self, walk: &FacetWalk<'_>) -> Option<NextFacet> {
+        let next = boxes::nearest_facet(self.cso, self.cost)?;
+        let is_next = next != walk.features && walk.steps_left > 0;
+        is_next.then(|| (Some(next), [feature::vertices(self.cso, next); 2]))
+    }
+
+    /// The depth where the walk ends, given a candidate and its inset.
+    #[inline]
+    fn end_walk(&mut self, candidate: (&Proximity, f64), walk: &FacetWalk<'_>) -> Found {
+        self.find_depth(candidate, walk.flush, walk.stage, walk.from)
     }
 
     /// Crosses a side, unless that leads back.

@@ -4,6 +4,7 @@ use glam::{DQuat, DVec3, Vec3};
 use isa_gjk::Hull;
 use isa_gjk::internals::epa::{EpaScratch, penetration};
 use isa_gjk::internals::pose::RelativePose;
+use isa_gjk::internals::query::{Answer, PairMemory, Query};
 use isa_gjk::internals::stats::Cost;
 use isa_gjk::internals::support::{Cso, Polytope};
 use parry3d::math::Pose;
@@ -76,4 +77,48 @@ fn boxes_overlap_by_their_depth_and_not_by_more() {
         tried += 1;
     }
     assert!(tried > 1000, "only {tried} overlaps");
+}
+
+/// A facet that is no longer the nearest leads to the one along the axis of least overlap, and no polytope grows.
+#[test]
+fn the_depth_of_boxes_needs_no_search() {
+    let mut rng = Rng::new(17);
+    let (mut tried, mut searched) = (0, 0);
+    for _ in 0..2000 {
+        let hulls = [(); 2].map(|()| {
+            let half = [(); 3].map(|()| rng.range(0.3, 1.0));
+            hull(DVec3::from(half), rng.rotation(), DVec3::ZERO)
+        });
+        let place = (rng.direction() * rng.range(0.2, 0.8)).as_vec3();
+        let mut memory = PairMemory::None;
+        // The second one turns, so that another facet is nearest.
+        for turn in [DQuat::IDENTITY, DQuat::from_rotation_y(0.4), rng.rotation()] {
+            let pose = Pose::from_parts(place, turn.as_quat());
+            let pose = RelativePose::new(&pose).expect("a finite pose");
+            let cso = Cso {
+                shape_1: &hulls[0],
+                shape_2: &hulls[1],
+                pose: &pose,
+            };
+            let (mut scratch, mut cost) = (EpaScratch::default(), Cost::default());
+            let found = penetration(&cso, &[], &mut scratch, &mut Cost::default());
+            let depth = found.expect("boxes have volume").depth;
+            let answer = Query::new(&cso, 0.02, &mut scratch, &mut cost).run(&memory);
+            let (answer, _) = answer.expect("boxes have volume");
+            memory = answer.memory();
+            if depth < 0.1 {
+                continue;
+            }
+            let Answer::Near(near) = answer else {
+                panic!("{depth} deep, but apart");
+            };
+            let error = (near.signed_distance + depth).abs();
+            assert!(error < 2e-6 * cso.size(), "{error} off at {depth}");
+            tried += 1;
+            searched += usize::from(cost.iterations > 0);
+        }
+    }
+    println!("{searched} of {tried} searched");
+    assert!(tried > 3000, "only {tried} overlaps");
+    assert!(searched < tried / 100, "{searched} of {tried} searched");
 }

@@ -1,6 +1,6 @@
 //! Whether features still prove an answer at the present poses.
 
-mod boxes;
+pub(super) mod boxes;
 pub(super) mod facet;
 pub(super) mod flush;
 pub(super) mod neighbors;
