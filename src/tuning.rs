@@ -184,3 +184,7 @@ pub(crate) const OWN_ROUNDING: f64 = 1e-6;
 
 /// The boundary of a half-space is a disc of so many radii under a curved shape, whose places are all above it.
 pub(crate) const WIDE_PLANE: f64 = 4.0;
+
+/// A ball that stands for a part of a body in a cast is larger than the part by this share of its radius and of its
+/// place: the motion of its centre is rounded a few times to f32.
+pub(crate) const LOOSE_BALL: f32 = 1e-5;

@@ -6,6 +6,7 @@ use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{
     DefaultQueryDispatcher, NonlinearRigidMotion, QueryDispatcher, ShapeCastHit, ShapeCastStatus,
 };
+use parry3d::shape::SharedShape;
 use testkit::curved::{Body, Difference};
 use testkit::generate::Rng;
 use testkit::pose::ExactPose;
@@ -362,4 +363,47 @@ fn impossible_motions_meet_nothing() {
         times: [Real::NAN, Real::NAN],
     };
     assert!(course.cast(true).is_none());
+}
+
+/// A body of two parts, and what it meets on its way: the first of what its parts meet alone.
+#[test]
+fn each_part_of_a_body_is_met_as_soon_as_alone() {
+    let mut rng = Rng::new(34);
+    let all = bodies(&mut rng);
+    let dispatcher = IsaGjkDispatcher::default();
+    let (mut hits, mut misses) = (0, 0);
+    for turn in 0..400 {
+        let [first, second, other] = [0; 3].map(|_| &all[rng.count(0, all.len() - 1)].shape);
+        let mut motion = |reach: f64| {
+            let at = rng.direction() * reach;
+            let start = Pose::from_parts(at.as_vec3(), rng.rotation().as_quat());
+            let center = (rng.direction() * rng.range(0.0, 0.5)).as_vec3();
+            let velocity = (rng.direction() * 0.5 - at).as_vec3();
+            let spin = (rng.direction() * rng.range(0.0, 12.0)).as_vec3();
+            NonlinearRigidMotion::new(start, center, velocity, spin)
+        };
+        let [whole, toward] = [motion(0.3), motion(2.5)];
+        let places = [-0.8, 0.8].map(|x| Pose::new(Vector::X * x, Vector::Y * x));
+        let parts = [first, second].into_iter().zip(places);
+        let compound = SharedShape::compound(parts.clone().map(|(s, p)| (p, s.clone())).collect());
+        let cast = |motion: &NonlinearRigidMotion, shape: &SharedShape| {
+            dispatcher
+                .cast_shapes_nonlinear(motion, &**shape, &toward, &**other, 0.0, 1.5, true)
+                .expect("supported")
+                .map(|hit| hit.time_of_impact)
+        };
+        let alone = parts.filter_map(|(shape, place)| cast(&whole.prepend(place), shape));
+        let alone = alone.reduce(Real::min);
+        assert_eq!(cast(&whole, &compound), alone, "turn {turn}");
+        let swapped = dispatcher
+            .cast_shapes_nonlinear(&toward, &**other, &whole, &*compound, 0.0, 1.5, true)
+            .expect("supported");
+        assert_eq!(
+            swapped.map(|hit| hit.time_of_impact).is_some(),
+            alone.is_some()
+        );
+        hits += usize::from(alone.is_some());
+        misses += usize::from(alone.is_none());
+    }
+    assert!(hits > 100 && misses > 20, "{hits} hits, {misses} misses");
 }

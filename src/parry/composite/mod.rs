@@ -18,6 +18,7 @@ use parry3d::shape::{Shape, ShapeType};
 mod compound;
 mod coplanar;
 mod mesh;
+mod nonlinear;
 pub(crate) mod scene;
 pub(crate) mod seams;
 mod spread;

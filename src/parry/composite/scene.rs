@@ -5,7 +5,6 @@
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{
     NonlinearShapeCastMode, cast_shapes_composite_shape_shape, cast_shapes_heightfield_shape,
-    cast_shapes_nonlinear_composite_shape_shape, cast_shapes_nonlinear_shape_composite_shape,
     cast_shapes_nonlinear_shape_voxels, cast_shapes_nonlinear_support_map_support_map,
     cast_shapes_nonlinear_voxels_shape, cast_shapes_shape_composite_shape,
     cast_shapes_shape_heightfield, cast_shapes_shape_voxels, cast_shapes_voxels_shape,
@@ -20,6 +19,8 @@ use parry3d::query::{
     ShapeCastHit, ShapeCastOptions, ShapeDistance, ShapeIntersection, Unsupported,
 };
 use parry3d::shape::{Shape, ShapeType};
+
+use super::nonlinear::{PartsCast, of_other};
 
 pub(crate) fn intersection_test(
     us: &impl PersistentQueryDispatcher,
@@ -149,6 +150,14 @@ pub(crate) fn cast_shapes_nonlinear(
     let stop = stop_at_penetration;
     let [m1, m2] = movers.map(|mover| mover.motion);
     let [g1, g2] = movers.map(|mover| mover.shape);
+    let parts_cast = |[motion, other_motion]: [_; 2], other| PartsCast {
+        us,
+        motion,
+        other_motion,
+        other,
+        times: [start, end],
+        stop_at_penetration,
+    };
     Ok(
         if let (Some(s1), Some(s2)) = (g1.as_support_map(), g2.as_support_map()) {
             let mode = if stop {
@@ -160,9 +169,9 @@ pub(crate) fn cast_shapes_nonlinear(
                 us, m1, s1, g1, m2, s2, g2, start, end, mode,
             )
         } else if let Some(c1) = g1.as_composite_shape() {
-            cast_shapes_nonlinear_composite_shape_shape(us, m1, c1, m2, g2, start, end, stop)
+            parts_cast([m1, m2], g2).run(c1)
         } else if let Some(c2) = g2.as_composite_shape() {
-            cast_shapes_nonlinear_shape_composite_shape(us, m1, g1, m2, c2, start, end, stop)
+            parts_cast([m2, m1], g1).run(c2).map(of_other)
         } else if let Some(v1) = g1.as_voxels() {
             cast_shapes_nonlinear_voxels_shape(us, m1, v1, m2, g2, start, end, stop)
         } else {
