@@ -15,15 +15,18 @@ use crate::slots::Slots;
 use crate::support::{Cso, Support};
 use crate::tolerance::PROOF_MARGIN;
 
-/// 4,096 slots, which take 288 KiB.
+/// 4,096 slots, which take 256 KiB.
 const SLOT_BITS: u32 = 12;
+/// 16,384 slots, which take 128 KiB. All contacts that stay ask for their tag, and to do without one costs as much as a query.
+const TAG_BITS: u32 = 14;
 
-/// Distances of many pairs. A key gives the slot; the shapes tell whether the distance in it is that of the pair.
+/// Distances of many pairs. A key gives the slot; a tag of the shapes and the contacts tells whether the distance in it is
+/// that of the pair.
 #[derive(Default)]
 pub(crate) struct StillCache {
     certified: Slots<Certified, SLOT_BITS>,
     /// Tags of contacts and of shapes to which they belong.
-    own_contacts: Slots<u64, SLOT_BITS>,
+    own_contacts: Slots<u64, TAG_BITS>,
 }
 
 /// Fills one cache line.
@@ -33,7 +36,8 @@ struct Certified {
     rotation: Quat,
     place: DVec3,
     distance: f64,
-    shapes: [Option<ShapeId>; 2],
+    /// Of the contacts, and of the shapes to which they belong.
+    tag: u64,
 }
 
 /// The pair of a distance.
@@ -72,13 +76,14 @@ impl StillPair {
 }
 
 impl StillCache {
-    /// Whether the shapes of a pair certainly have this signed distance, up to a tolerance.
+    /// Whether contacts with a tag belong to the shapes of a pair, and these certainly have this signed distance, up to a
+    /// tolerance.
     #[inline]
-    pub fn proves(&self, pair: &StillPair, distance: f64, tolerance: f64) -> bool {
+    pub fn proves(&self, pair: &StillPair, tag: u64, distance: f64, tolerance: f64) -> bool {
         let Some(known) = self.certified.get(pair.key) else {
             return false;
         };
-        known.shapes == pair.shapes.map(Some)
+        known.tag == tag
             && is_nearly_unit(pair.rotation)
             && (known.distance - distance).abs() + known.motion_to(pair) <= tolerance
     }
@@ -94,9 +99,9 @@ impl StillCache {
         *self.own_contacts.get_or_allocate(key) = tag;
     }
 
-    /// Stores a signed distance that was certified at the present pose.
+    /// Stores a signed distance that was certified at the present pose, for contacts that belong to the shapes.
     #[inline]
-    pub fn store(&mut self, pair: &StillPair, distance: f64) {
+    pub fn store(&mut self, pair: &StillPair, tag: u64, distance: f64) {
         if !is_nearly_unit(pair.rotation) {
             return;
         }
@@ -104,7 +109,7 @@ impl StillCache {
             rotation: pair.rotation,
             place: pair.place,
             distance,
-            shapes: pair.shapes.map(Some),
+            tag,
         };
     }
 }

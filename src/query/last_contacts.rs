@@ -61,6 +61,12 @@ impl LastContacts {
         })
     }
 
+    /// Tells these points on shape 1 from others.
+    #[inline]
+    pub fn fingerprint(&self) -> u64 {
+        fingerprint(self.on_1)
+    }
+
     /// The mean of the points on shape 1.
     #[inline]
     pub fn middle(&self) -> DVec3 {
@@ -77,6 +83,21 @@ impl LastContacts {
         (self.on_1 * weights).sum() / sum(weights)
     }
 }
+
+/// A number that tells four points from others: a weighted sum of their coordinates. If one coordinate differs by a
+/// rounding of f32, so does the sum, if no other one is
+/// 2^28 times as large.
+#[inline]
+pub(crate) fn fingerprint(points: DVec3x4) -> u64 {
+    sum(points.dot_each(DVec3x4(WEIGHTS.map(f64x4::new)))).to_bits()
+}
+
+/// Square roots of primes: no two coordinates have weights in a simple ratio.
+const WEIGHTS: [[f64; LANES]; 3] = [
+    [1.732_050_8, 2.236_068_0, 2.645_751_3, 3.316_624_8],
+    [3.605_551_3, 4.123_105_6, 4.358_898_9, 4.795_831_5],
+    [5.385_164_8, 5.567_764_4, 6.082_762_5, 6.403_124_2],
+];
 
 /// The index of the least value; of equal ones, the first.
 #[inline]

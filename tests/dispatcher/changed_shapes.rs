@@ -256,3 +256,96 @@ fn a_ground_that_is_tilted_under_a_tip_has_its_own_normal() {
     let warm = after_exchange(&body, blocks.each_ref(), &Pose::IDENTITY);
     assert!(warm.local_n1.distance(tilted) < 1e-5, "{}", warm.local_n1);
 }
+
+/// How far the contacts of a manifold are outside of a block of this width and depth, on which the others lie.
+fn outside(manifold: &Manifold, [x, z]: [f32; 2]) -> f32 {
+    let places = manifold.points.iter().map(|point| point.local_p1);
+    let beyond = places.map(|place| (place.x.abs() - x).max(place.z.abs() - z));
+    beyond.fold(f32::NEG_INFINITY, f32::max)
+}
+
+/// Bodies whose feet reach at least half a unit from their axis, and which are as high.
+fn standing_bodies() -> [(&'static str, SharedShape); 5] {
+    [
+        ("hull", block(0, [0.5; 3])),
+        ("hull shape", block(1, [0.5; 3])),
+        ("cuboid", block(2, [0.5; 3])),
+        ("cylinder", SharedShape::cylinder(0.5, 0.5)),
+        ("cone", SharedShape::cone(0.5, 0.5)),
+    ]
+}
+
+/// The ground is another one for a single update. A proof from before is still there, but not the contacts.
+#[test]
+fn a_ground_that_comes_back_has_contacts_of_its_own() {
+    let sides = [[2.0, 0.3], [0.3, 2.0]];
+    for kind in 0..2 {
+        let grounds = sides.map(|[x, z]| block(kind, [x, 0.5, z]));
+        for (name, body) in standing_bodies() {
+            let dispatcher = IsaGjkDispatcher::default();
+            let mut memory = Memory::default();
+            let pose = Pose::translation(0.0, 0.999, 0.0);
+            for ground in [0, 0, 0, 0, 1, 0, 1, 1, 1, 1, 0, 1] {
+                let shapes = [&grounds[ground], &body];
+                let warm = memory.update(&dispatcher, &pose, shapes, 0.02);
+                let outside = outside(warm.expect("supported"), sides[ground]);
+                assert!(outside < 1e-5, "{name} on {ground} of {kind}: {outside}");
+            }
+        }
+    }
+}
+
+/// The body tilts a little from one update to the next, so that no contact is left as it is.
+#[test]
+fn nothing_moves_beside_a_ground_that_has_shrunk() {
+    for kind in 0..2 {
+        let grounds = [2.0, 0.3].map(|half| block(kind, [half, 0.5, half]));
+        for (name, body) in standing_bodies() {
+            let dispatcher = IsaGjkDispatcher::default();
+            let mut memory = Memory::default();
+            for turn in 0..8 {
+                let tilt = Vector::new(0.0, 0.0, 5e-6 + 1e-5 * (turn % 2) as f32);
+                let pose = Pose::new(Vector::new(0.2, 0.999, 0.0), tilt);
+                let ground = turn / 4;
+                let shapes = [&grounds[ground], &body];
+                let warm = memory.update(&dispatcher, &pose, shapes, 0.02);
+                let warm = warm.expect("supported");
+                let half = [2.0, 0.3][ground];
+                let outside = outside(warm, [half; 2]);
+                assert!(outside < 1e-5, "{name} on {ground} of {kind}: {outside}");
+                assert!(!warm.points.is_empty(), "{name} on {ground} of {kind}");
+            }
+        }
+    }
+}
+
+/// On a half-space, a body's own foot may shrink while it stands or tilts.
+#[test]
+fn a_foot_that_has_shrunk_bears_only_on_itself() {
+    let plane = SharedShape::halfspace(Vector::Y);
+    type Foot = fn(f32) -> SharedShape;
+    let feet: [(&str, Foot); 4] = [
+        ("hull", |half| block(0, [half, 0.5, half])),
+        ("hull shape", |half| block(1, [half, 0.5, half])),
+        ("round cylinder", |half| {
+            SharedShape::round_cylinder(0.4, half - 0.1, 0.1)
+        }),
+        ("round cone", |half| {
+            SharedShape::round_cone(0.4, half - 0.1, 0.1)
+        }),
+    ];
+    for (name, foot) in feet {
+        for tilt in [0.0, 1e-5] {
+            let dispatcher = IsaGjkDispatcher::default();
+            let mut memory = Memory::default();
+            for turn in 0..8 {
+                let half = if turn < 4 { 0.8 } else { 0.3 };
+                let tilt = Vector::new(0.0, 0.0, tilt * (turn % 2) as f32);
+                let pose = Pose::new(Vector::new(0.0, 0.499, 0.0), tilt);
+                let warm = memory.update(&dispatcher, &pose, [&plane, &foot(half)], 0.02);
+                let outside = outside(warm.expect("supported"), [half; 2]);
+                assert!(outside < 1e-4, "{name}, turn {turn}: {outside}");
+            }
+        }
+    }
+}

@@ -6,15 +6,16 @@ use parry3d::query::Unsupported;
 
 use super::kernel_manifold::{AxisFrame, KernelManifold};
 use super::normals::Normals;
+use super::own_contacts::{OwnCheck, ids};
 use super::still::{PresentContacts, Still};
 use super::update::UpdateManifold;
-use crate::curved::{self, CurvedAnswer, CurvedQuery, Hint, Patch, SurfacePieces};
+use crate::curved::{self, CurvedAnswer, CurvedQuery, Patch, SurfacePieces};
 use crate::manifold::Contacts;
 use crate::parry::constraints::{ConstrainedPair, Constraints, Corrected};
 use crate::parry::pair::{Pair, valid_pose};
-use crate::parry::still_cache::StillPair;
+use crate::parry::still_cache::{StillCache, StillPair};
 use crate::parry::workspace::Workspace;
-use crate::query::{Feature, LastContacts, PairMemory, Proximity};
+use crate::query::{Feature, LastContacts, Proximity};
 use crate::stats::{Cost, Stage};
 use crate::support::{Cso, FaceId, VertexId};
 use crate::tolerance::DEPTH_GAP;
@@ -97,23 +98,6 @@ impl UpdateManifold<'_> {
     }
 }
 
-impl KernelManifold<'_, '_> {
-    /// The memory of the pair, and its contacts. The cores may be apart although the shapes, with their `borders`,
-    /// overlap.
-    fn hint(&self, last: Option<&LastContacts>, borders: f64) -> Hint {
-        match (last, self.normals()) {
-            (Some(last), Some(normals)) => {
-                Hint::Contact(normals, last.least(normals[0]) + borders < 0.0)
-            }
-            (Some(_), None) => Hint::None,
-            (None, _) => match self.memory(None) {
-                PairMemory::Axis(axis, ids) => Hint::Apart(axis, ids),
-                _ => Hint::None,
-            },
-        }
-    }
-}
-
 /// Shapes that are near each other.
 struct Near<'a, 'c, A, B> {
     cso: &'a Cso<'c, A, B>,
@@ -160,25 +144,33 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
             still.store(&mut workspace.still_cache, core_distance);
             return true;
         }
-        let patch = &mut workspace.curved.patch;
         let normals = Normals::of(&self.proximity(), self.cso.pose);
         if Constraints::are_none(constraints.0) {
-            let is_kept = self.keep(manifold, &normals);
+            let is_kept = self.keep(manifold, &normals, &mut workspace.still_cache);
             if !is_kept {
-                manifold.set_contacts(normals.rounded, &self.along_normal(patch));
-                let shapes = [self.cso.shape_1.id(), self.cso.shape_2.id()];
-                (manifold.manifold).note_chosen(shapes, &mut workspace.still_cache);
+                let contacts = self.along_normal(&mut workspace.curved.patch);
+                manifold.set_contacts(normals.rounded, &contacts);
+                manifold.note_chosen(ids(self.cso), &mut workspace.still_cache);
             }
             return is_kept;
         }
-        self.update_constrained(constraints, manifold, &normals, patch)
+        self.update_constrained(constraints, manifold, &normals, workspace)
     }
 
     /// Keeps the contacts where they are, if they are still in place.
-    fn keep(&self, manifold: &mut KernelManifold<'_, '_>, normals: &Normals) -> bool {
-        let radius = self.cso.min_radius();
-        !manifold.has_rolled(self.cso, normals.exact)
-            && (manifold.keep_places(self.last, self.least, normals, radius)).is_some()
+    fn keep(
+        &self,
+        manifold: &mut KernelManifold<'_, '_>,
+        normals: &Normals,
+        cache: &mut StillCache,
+    ) -> bool {
+        let (cso, key) = (self.cso, manifold.manifold.key());
+        let check = OwnCheck { cache, key };
+        let are_own =
+            |last: &LastContacts, normals| check.passes(cso, self.border_radii, last, normals);
+        let (last, radius) = (self.last, cso.min_radius());
+        !manifold.has_rolled(cso, normals.exact)
+            && (manifold.keep_places(last, self.least, normals, radius, are_own)).is_some()
     }
 
     /// The contacts along the normal of the query, whose patch is begun.
@@ -203,7 +195,7 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         (constraints, pos12): (&[Constraints<'_>; 2], &Pose),
         manifold: &mut KernelManifold<'_, '_>,
         normals: &Normals,
-        patch: &mut Patch,
+        workspace: &mut Workspace,
     ) -> bool {
         let border = self.border_radii[0] + self.border_radii[1];
         let pair = ConstrainedPair {
@@ -216,9 +208,10 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         };
         let corrected = pair.correct(pair.order.to_caller(normals.rounded));
         let is_as_it_was = pair.leaves(corrected.as_ref(), normals.rounded);
-        if is_as_it_was && self.keep(manifold, normals) {
+        if is_as_it_was && self.keep(manifold, normals, &mut workspace.still_cache) {
             return true;
         }
+        let patch = &mut workspace.curved.patch;
         let chosen = if is_as_it_was {
             Some((normals.rounded, self.along_normal(patch)))
         } else {

@@ -93,10 +93,10 @@ pub(super) trait ErasedPoints {
 
     fn distance(&self, contact: usize) -> Option<f32>;
 
-    /// In the caller's order of the shapes.
-    /// The point of the first contact on the first shape.
-    fn first_place(&self) -> Option<Vec3>;
+    /// The points on the kernels' first shape, as [`read`](Self::read) reads them.
+    fn places(&self, order: PairOrder) -> Option<DVec3x4>;
 
+    /// In the caller's order of the shapes.
     fn features(&self, contact: usize) -> Option<[PackedFeatureId; 2]>;
 
     fn set_features(&mut self, contact: usize, ids: [PackedFeatureId; 2]);
@@ -126,8 +126,13 @@ impl<C: Default + Copy> ErasedPoints for Vec<TrackedContact<C>> {
         Some(self.get(contact)?.dist)
     }
 
-    fn first_place(&self) -> Option<Vec3> {
-        Some(self.first()?.local_p1)
+    fn places(&self, order: PairOrder) -> Option<DVec3x4> {
+        let places = of_lanes(lanes(self)?);
+        Some(if order.is_reversed() {
+            places(|contact| &contact.local_p2)
+        } else {
+            places(|contact| &contact.local_p1)
+        })
     }
 
     fn features(&self, contact: usize) -> Option<[PackedFeatureId; 2]> {
@@ -146,15 +151,10 @@ impl<C: Default + Copy> ErasedPoints for Vec<TrackedContact<C>> {
     }
 
     fn read(&self, order: PairOrder, pose: &RelativePose, last: &mut Option<LastContacts>) {
-        let lanes = match &self[..] {
-            [a] => [a, a, a, a],
-            [a, b] => [a, b, b, b],
-            [a, b, c] => [a, b, c, c],
-            [a, b, c, d] => [a, b, c, d],
-            _ => return,
+        let Some(lanes) = lanes(self) else {
+            return;
         };
-        let points =
-            |of: fn(&TrackedContact<C>) -> &Vec3| DVec3x4(coordinates(lanes.map(of)).map(widened));
+        let points = of_lanes(lanes);
         let (on_1, on_2) = if order.is_reversed() {
             (points(|c| &c.local_p2), points(|c| &c.local_p1))
         } else {
@@ -174,4 +174,24 @@ impl<C: Default + Copy> ErasedPoints for Vec<TrackedContact<C>> {
     fn replace_by_ids(&mut self, points: [Option<TrackedContact<()>>; 3]) {
         replace_by_ids(self, points);
     }
+}
+
+/// One to four contacts, of which the last is repeated.
+#[inline]
+fn lanes<C>(contacts: &[TrackedContact<C>]) -> Option<[&TrackedContact<C>; LANES]> {
+    Some(match contacts {
+        [a] => [a, a, a, a],
+        [a, b] => [a, b, b, b],
+        [a, b, c] => [a, b, c, c],
+        [a, b, c, d] => [a, b, c, d],
+        _ => return None,
+    })
+}
+
+/// Reads points of four contacts.
+#[inline]
+fn of_lanes<C>(
+    lanes: [&TrackedContact<C>; LANES],
+) -> impl Fn(fn(&TrackedContact<C>) -> &Vec3) -> DVec3x4 {
+    move |of| DVec3x4(coordinates(lanes.map(of)).map(widened))
 }

@@ -2,6 +2,7 @@
 
 use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
+use super::own_contacts::{OwnCheck, are_near, are_on_plane};
 use super::packed_feature::unpack;
 use super::still::Still;
 use crate::hull::Hull;
@@ -58,11 +59,12 @@ impl HalfSpaceUpdate<'_, '_> {
             self.manifold.set_axis(near.normal, vertices);
             return Stage::Axis;
         }
-        if self.is_held(near.signed_distance, cache) || self.update_contacts(&near, scratch) {
+        if self.is_held(near.signed_distance, cache) || self.update_contacts(&near, scratch, cache)
+        {
             return Stage::Kept;
         }
         let shapes = [hull.id(), Some(self.pair.other.id())];
-        self.manifold.manifold.note_chosen(shapes, cache);
+        self.manifold.note_chosen(shapes, cache);
         Stage::Feature
     }
 
@@ -107,7 +109,12 @@ impl HalfSpaceUpdate<'_, '_> {
 
     /// Writes the contacts, or leaves the `last` ones where they are. Returns whether it left them.
     #[inline(always)]
-    fn update_contacts(&mut self, near: &Proximity, scratch: &mut ClipScratch) -> bool {
+    fn update_contacts(
+        &mut self,
+        near: &Proximity,
+        scratch: &mut ClipScratch,
+        cache: &mut StillCache,
+    ) -> bool {
         let hull: &Hull = self.pair.hull;
         // The plane's own normal is the one that points out of the half-space.
         let exact = [near.normal, self.pair.other.normal];
@@ -115,8 +122,18 @@ impl HalfSpaceUpdate<'_, '_> {
             exact,
             rounded: map_pair(exact, |normal| normal.as_vec3()),
         };
-        let is_kept =
-            (self.manifold).keep_contacts(self.last.as_ref(), near, &normals, hull.radius());
+        let (pair, pose) = (self.pair, self.pose);
+        let key = self.manifold.manifold.key();
+        let are_own = |last: &LastContacts, normals| {
+            let shapes = [hull.id(), Some(pair.other.id())];
+            OwnCheck { cache, key }.passes_if(shapes, last, normals, || {
+                let ([on_1, on_2], radius) = (last.points(pose), hull.radius());
+                are_near(hull, &on_1, pair.border_radii[0], radius)
+                    && are_on_plane(pair.other, &on_2, radius)
+            })
+        };
+        let last = self.last.as_ref();
+        let is_kept = (self.manifold).keep_contacts(last, near, &normals, hull.radius(), are_own);
         if !is_kept {
             let mut contacts =
                 manifold::half_space_contacts(hull, self.pose, near, self.max_distance, scratch);

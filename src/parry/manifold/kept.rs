@@ -9,12 +9,14 @@
 //! are exact: along `n` the shapes lie on either side of two supporting planes that are `d` apart.
 //! So no pair of points is deeper than `d`, and a kept contact never shows an overlap that does not
 //! exist. The deepest kept contact must show `d` itself, up to a tolerance, and is then reported at `d`;
-//! otherwise the contacts are chosen anew.
+//! otherwise the contacts are chosen anew. They also are if they do not lie on the shapes, which may have been
+//! exchanged.
 
 use glam::Vec3;
 
 use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
+use super::own_contacts::StoredNormals;
 use crate::pose::RelativePose;
 use crate::query::{LastContacts, Proximity, first_least};
 use crate::simd::LANES;
@@ -29,7 +31,8 @@ impl KernelManifold<'_, '_> {
     }
 
     /// Measures the contacts anew where they are. Returns `false`, and changes nothing, if they have to be
-    /// chosen anew. `radius` is that of the smaller shape.
+    /// chosen anew. `radius` is that of the smaller shape. `are_own` tells whether contacts belong to the shapes, and is told the normal that is stored
+    /// if so.
     // perf: a call would pass the normals through memory.
     #[inline(always)]
     pub fn keep_contacts(
@@ -38,8 +41,9 @@ impl KernelManifold<'_, '_> {
         near: &Proximity,
         normals: &Normals,
         radius: f64,
+        are_own: impl FnOnce(&LastContacts, StoredNormals) -> bool,
     ) -> bool {
-        let kept = self.keep_places(last, near.signed_distance, normals, radius);
+        let kept = self.keep_places(last, near.signed_distance, normals, radius, are_own);
         if let Some(deepest) = kept {
             self.set_deepest_features(deepest, near.features);
         }
@@ -54,6 +58,7 @@ impl KernelManifold<'_, '_> {
         signed_distance: f64,
         normals: &Normals,
         radius: f64,
+        are_own: impl FnOnce(&LastContacts, StoredNormals) -> bool,
     ) -> Option<usize> {
         let old_normals = [*self.manifold.local_n1, *self.manifold.local_n2];
         let last = last?;
@@ -72,7 +77,11 @@ impl KernelManifold<'_, '_> {
         let deepest = first_least(distances);
         let signed_distance = signed_distance - (self.border_radii[0] + self.border_radii[1]);
         let excess = distances[deepest] - signed_distance;
-        if excess.abs() > KEPT_DEPTH * radius {
+        let stored = StoredNormals {
+            before: self.stored_normal(),
+            after: normals.rounded[0],
+        };
+        if excess.abs() > KEPT_DEPTH * radius || !are_own(last, stored) {
             return None;
         }
         distances[deepest] = signed_distance;

@@ -17,6 +17,7 @@ use glam::{DVec3, Vec3};
 use super::erased::ErasedManifold;
 use super::inherit::ManifoldPoints;
 use super::packed_feature::unpack;
+use crate::curved::Hint;
 use crate::manifold::{Contacts, MAX_POINTS};
 use crate::map_pair::map_pair;
 use crate::parry::order::PairOrder;
@@ -148,11 +149,33 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
         }
     }
 
+    /// The memory of a pair with a curved shape, and its contacts. The cores may be apart although the shapes, with their `borders`,
+    /// overlap.
+    pub fn hint(&self, last: Option<&LastContacts>, borders: f64) -> Hint {
+        match (last, self.normals()) {
+            (Some(last), Some(normals)) => {
+                Hint::Contact(normals, last.least(normals[0]) + borders < 0.0)
+            }
+            (Some(_), None) => Hint::None,
+            (None, _) => match self.memory(None) {
+                PairMemory::Axis(axis, ids) => Hint::Apart(axis, ids),
+                _ => Hint::None,
+            },
+        }
+    }
+
     /// The normals of contacts, in the order of the kernels, if they are unit vectors.
     pub fn normals(&self) -> Option<[DVec3; 2]> {
         let normals = [*self.manifold.local_n1, *self.manifold.local_n2];
         let [first, second] = self.order.to_kernel(normals);
         Some([unit(first)?, unit(second)?])
+    }
+
+    /// The stored normal, outward from the kernels' first shape and in its frame.
+    #[inline]
+    pub fn stored_normal(&self) -> Vec3 {
+        self.order
+            .to_kernel([*self.manifold.local_n1, *self.manifold.local_n2])[0]
     }
 
     /// Whether one of the shapes has rolled over the other since the normals were stored.

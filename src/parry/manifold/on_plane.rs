@@ -6,13 +6,16 @@ use parry3d::query::Unsupported;
 
 use super::kernel_manifold::{AxisFrame, KernelManifold};
 use super::normals::Normals;
+use super::own_contacts::{OwnCheck, are_near, are_on_plane};
 use super::update::UpdateManifold;
 use crate::curved::{self, SurfacePieces};
 use crate::parry::constraints::Constraints;
 use crate::parry::convert::HalfSpace;
 use crate::parry::pair::{Pair, valid_pose};
+use crate::parry::still_cache::StillCache;
 use crate::parry::workspace::Workspace;
-use crate::query::{Feature, Proximity};
+use crate::pose::RelativePose;
+use crate::query::{Feature, LastContacts, Proximity};
 use crate::support::FaceId;
 
 impl UpdateManifold<'_> {
@@ -36,25 +39,46 @@ impl UpdateManifold<'_> {
             manifold.forget();
             return Ok(());
         }
-        let patch = &mut workspace.curved.patch;
+        let (patch, still_cache) = (&mut workspace.curved.patch, &mut workspace.still_cache);
         let near = proximity(normal, patch.find_on_plane(normal, solid, &pose, border));
         let least = near.signed_distance;
         if least > max_distance {
             manifold.forget();
             return Ok(());
         }
-        let mut last = None;
-        manifold.read_contacts(&pose, &mut last);
         let normals = Normals::of(&near, &pose);
-        let before = manifold.normals();
-        let is_kept = before.is_some_and(|[_, before]| !solid.rolls(before, normals.exact[1]))
-            && (manifold.keep_places(last.as_ref(), least, &normals, radius)).is_some();
-        if !is_kept {
+        if !keep((pair, &pose), least, &mut manifold, &normals, still_cache) {
             let contacts = curved::contacts(patch, &pose, (near.on_1, least), max_distance, radius);
             manifold.set_contacts(normals.rounded, &contacts);
+            let shapes = [Some(pair.hull.id()), solid.id()];
+            manifold.note_chosen(shapes, still_cache);
         }
         Ok(())
     }
+}
+
+/// Keeps the contacts of a solid on a half-space where they are, if they are still in place at this signed distance.
+fn keep<S: SurfacePieces>(
+    (pair, pose): (&Pair<'_, S, HalfSpace>, &RelativePose),
+    least: f64,
+    manifold: &mut KernelManifold<'_, '_>,
+    normals: &Normals,
+    cache: &mut StillCache,
+) -> bool {
+    let (plane, solid, border) = (pair.hull, pair.other, pair.border_radii[1]);
+    let (radius, key) = (solid.radius(), manifold.manifold.key());
+    let mut last = None;
+    manifold.read_contacts(pose, &mut last);
+    let are_own = |last: &LastContacts, normals| {
+        let shapes = [Some(plane.id()), solid.id()];
+        OwnCheck { cache, key }.passes_if(shapes, last, normals, || {
+            let [on_1, on_2] = last.points(pose);
+            are_on_plane(plane, &on_1, radius) && are_near(solid, &on_2, border, radius)
+        })
+    };
+    let before = manifold.normals();
+    before.is_some_and(|[_, before]| !solid.rolls(before, normals.exact[1]))
+        && (manifold.keep_places(last.as_ref(), least, normals, radius, are_own)).is_some()
 }
 
 /// Of the deepest point of the second shape, in frame 1, over the plane through the origin.

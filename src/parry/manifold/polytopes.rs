@@ -5,10 +5,12 @@ use parry3d::math::Pose;
 
 use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
+use super::own_contacts::OwnCheck;
 use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch, Contacts};
 use crate::map_pair::map_pair;
 use crate::parry::constraints::{ConstrainedPair, Constraints, Corrected};
+use crate::parry::still_cache::StillCache;
 use crate::query::{self, LastContacts, Proximity};
 use crate::support::{Cso, Polytope};
 use crate::tuning::ABSURD_DEPTH;
@@ -20,6 +22,7 @@ pub(super) struct PolytopeContacts<'a, B> {
     pub constraints: &'a [Constraints<'a>; 2],
     pub pos12: &'a Pose,
     pub scratch: &'a mut ClipScratch,
+    pub still_cache: &'a mut StillCache,
 }
 
 impl<B: Polytope> PolytopeContacts<'_, B> {
@@ -43,6 +46,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
             // in registers.
             let contacts = PolytopeContacts {
                 scratch: &mut *self.scratch,
+                still_cache: &mut *self.still_cache,
                 ..*self
             };
             return contacts.update_constrained(manifold, last, near, &normals);
@@ -62,14 +66,20 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
     /// Keeps the contacts where they are, if they are still in place.
     #[inline]
     fn keep(
-        &self,
+        &mut self,
         manifold: &mut KernelManifold<'_, '_>,
         last: Option<&LastContacts>,
         near: &Proximity,
         normals: &Normals,
     ) -> bool {
-        !manifold.has_rolled(self.cso, normals.exact)
-            && manifold.keep_contacts(last, near, normals, self.cso.min_radius())
+        let (cso, border_radii) = (self.cso, manifold.border_radii);
+        let check = OwnCheck {
+            cache: &mut *self.still_cache,
+            key: manifold.manifold.key(),
+        };
+        let are_own = |last: &LastContacts, normals| check.passes(cso, border_radii, last, normals);
+        !manifold.has_rolled(cso, normals.exact)
+            && manifold.keep_contacts(last, near, normals, cso.min_radius(), are_own)
     }
 
     /// Like [`update_contacts`](Self::update_contacts), along normals that the constraints correct.

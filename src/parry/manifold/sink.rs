@@ -2,11 +2,11 @@
 
 use super::erased::ErasedManifold;
 use super::kernel_manifold::{AxisFrame, KernelManifold};
+use super::own_contacts::ids;
 use super::polytopes::PolytopeContacts;
 use super::still::{PresentContacts, Still};
 use crate::gjk::SeparatingAxis;
 use crate::parry::pair::Pair;
-use crate::parry::still_cache::StillCache;
 use crate::query::{FlushFaces, LastContacts, PairMemory, Proximity, Sink};
 use crate::stats::Stage;
 use crate::support::{Cso, Polytope, Support};
@@ -23,10 +23,6 @@ pub(super) struct ManifoldSink<'a, 'm, B> {
     /// The same, if they may stay as they are.
     still: Option<&'a Still>,
     is_kept: bool,
-    /// Whether contacts were chosen without constraints.
-    is_chosen: bool,
-    /// The signed distance of the cores, if the contacts are as they were.
-    held_at: Option<f64>,
     /// The separation that is proved by what the manifold remembers, if it need not change.
     still_apart: Option<f64>,
 }
@@ -49,8 +45,6 @@ impl<'a, 'm, B: Polytope> ManifoldSink<'a, 'm, B> {
             last: &mut present.last,
             still: present.still.as_ref(),
             is_kept: false,
-            is_chosen: false,
-            held_at: None,
             still_apart: None,
         }
     }
@@ -70,18 +64,6 @@ impl<'a, 'm, B: Polytope> ManifoldSink<'a, 'm, B> {
         match stage {
             Stage::BoundingSpheres => Some(cso.center().length() - cso.size()),
             _ => self.still_apart,
-        }
-    }
-
-    /// Stores the distance of a pair at rest, or which shapes the contacts were chosen for.
-    #[inline]
-    pub fn note(&self, cache: &mut StillCache) {
-        if let (Some(still), Some(distance)) = (self.still, self.held_at) {
-            still.store(cache, distance);
-        } else if self.is_chosen {
-            let cso = self.contacts.cso;
-            let shapes = [cso.shape_1.id(), cso.shape_2.id()];
-            self.manifold.note_chosen(shapes, cache);
         }
     }
 
@@ -147,13 +129,15 @@ impl<B: Polytope> Sink for ManifoldSink<'_, '_, B> {
             if still.is_of(self.contacts.cso, (&manifold, self.pair.border_radii), last) {
                 manifold.manifold.hold(still);
                 self.is_kept = true;
-                self.held_at = Some(near.signed_distance);
+                still.store(self.contacts.still_cache, near.signed_distance);
                 return;
             }
             *self.last = None;
         }
         let last = self.last.as_ref();
         self.is_kept = self.contacts.update_contacts(&mut manifold, last, near);
-        self.is_chosen = !self.is_kept && self.contacts.is_free();
+        if !self.is_kept && self.contacts.is_free() {
+            manifold.note_chosen(ids(self.contacts.cso), self.contacts.still_cache);
+        }
     }
 }

@@ -9,8 +9,7 @@ use glam::DVec3;
 
 use super::erased::ErasedManifold;
 use super::kernel_manifold::KernelManifold;
-use super::own_contacts::{ContactsOnShape, some_is_on_both};
-use crate::mix::extended;
+use super::own_contacts::{self, ContactsOnShape, some_is_on_both};
 use crate::parry::convert::HalfSpace;
 use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
@@ -18,7 +17,7 @@ use crate::parry::still_cache::{StillCache, StillPair};
 use crate::pose::RelativePose;
 use crate::query::{LastContacts, first_least};
 use crate::simd::LANES;
-use crate::support::{Cso, ShapeId, Support};
+use crate::support::{Cso, Support};
 use crate::tolerance::{DEPTH_ERROR, KEPT_DRIFT, STILL_DEPTH, STILL_TILT};
 
 /// The contacts of a manifold at the present pose.
@@ -36,9 +35,10 @@ pub(super) struct Still {
     /// The least of them, and thus that of the shapes, if nothing has to change.
     least: f64,
     pair: StillPair,
-    /// Whether the contacts are known to belong to the shapes, and what tells both from others.
-    are_own: bool,
+    /// Tells the contacts and the shapes from others.
     tag: u64,
+    /// Whether the contacts are known to belong to the shapes.
+    are_own: bool,
 }
 
 impl PresentContacts {
@@ -60,9 +60,9 @@ impl PresentContacts {
             self.still = Some(Still {
                 distances,
                 least,
+                tag: own_contacts::tag(pair.shapes, last.fingerprint(), manifold.stored_normal()),
                 pair,
                 are_own: false,
-                tag: 0,
             });
         }
     }
@@ -80,13 +80,13 @@ impl Still {
     ) -> bool {
         let distance = self.least + border_1 + border_2;
         let tolerance = (STILL_DEPTH - DEPTH_ERROR) * self.pair.radius;
-        distance + tolerance <= max_distance && cache.proves(&self.pair, distance, tolerance)
+        distance + tolerance <= max_distance
+            && cache.proves(&self.pair, self.tag, distance, tolerance)
     }
 
     /// Looks up whether the contacts belong to the shapes.
     #[inline]
-    pub fn find_own(&mut self, cache: &StillCache, manifold: &ErasedManifold<'_>) {
-        self.tag = manifold.tag(self.pair.shapes);
+    pub fn find_own(&mut self, cache: &StillCache) {
         self.are_own = cache.are_own(self.pair.key, self.tag);
     }
 
@@ -150,7 +150,7 @@ impl Still {
 
     /// Stores the signed distance of the cores, which was certified, and that the contacts belong to the shapes.
     pub fn store(&self, cache: &mut StillCache, core_distance: f64) {
-        cache.store(&self.pair, core_distance);
+        cache.store(&self.pair, self.tag, core_distance);
         if !self.are_own {
             cache.note_own(self.pair.key, self.tag);
         }
@@ -170,23 +170,6 @@ pub(super) fn is_settled(
 }
 
 impl ErasedManifold<'_> {
-    /// Tells contacts of shapes from others: by the first point, which stays while contacts keep their places.
-    fn tag(&self, shapes: [ShapeId; 2]) -> u64 {
-        let [first, second] = shapes.map(ShapeId::number);
-        let [x, y, z] = (self.points().first_place().unwrap_or_default().to_array())
-            .map(|coordinate| u64::from(coordinate.to_bits()));
-        let words = [first, second ^ x << 32, y << 32 | z];
-        words.into_iter().fold(0, extended)
-    }
-
-    /// Notes that the contacts were chosen for these shapes.
-    #[inline]
-    pub(super) fn note_chosen(&self, shapes: [Option<ShapeId>; 2], cache: &mut StillCache) {
-        if let [Some(first), Some(second)] = shapes {
-            cache.note_own(self.key(), self.tag([first, second]));
-        }
-    }
-
     /// Writes the distances, and leaves everything else.
     #[inline]
     pub(super) fn hold(&mut self, still: &Still) {

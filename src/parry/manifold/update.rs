@@ -140,7 +140,7 @@ impl<'a> UpdateManifold<'a> {
             self.manifold.hold(still);
             self.stats.record_free(Stage::Still);
         } else {
-            still.find_own(still_cache, &self.manifold);
+            still.find_own(still_cache);
         }
         is_proved
     }
@@ -170,11 +170,11 @@ impl<'a> UpdateManifold<'a> {
             constraints: self.constraints,
             pos12: self.pos12,
             scratch: &mut workspace.clip,
+            still_cache: &mut workspace.still_cache,
         };
         let mut sink = ManifoldSink::new(&mut self.manifold, pair, frame, contacts, present);
         let stage = query.run_into(Full, &mut sink).ok_or(Unsupported)?;
         let (apart_by, stage) = (sink.still_apart(stage, cso), sink.stage(stage));
-        sink.note(&mut workspace.still_cache);
         if let (Some(separation), Some(apart)) = (apart_by, self.apart_pair(pair)) {
             let proofs = &mut workspace.apart_cache;
             let lever = frame.lever(cso, pair.order);
