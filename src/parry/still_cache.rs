@@ -94,9 +94,10 @@ impl StillCache {
         self.own_contacts.get(key) == Some(&tag)
     }
 
-    /// Notes that contacts belong to the shapes of a pair.
-    pub fn note_own(&mut self, key: u64, tag: u64) {
-        *self.own_contacts.get_or_allocate(key) = tag;
+    /// The tag of contacts that belong to the shapes of a pair.
+    #[inline]
+    pub fn own_contacts(&mut self, key: u64) -> &mut u64 {
+        self.own_contacts.get_or_allocate(key)
     }
 
     /// Stores a signed distance that was certified at the present pose, for contacts that belong to the shapes.

@@ -63,7 +63,7 @@ impl LastContacts {
 
     /// Tells these points on shape 1 from others.
     #[inline]
-    pub fn fingerprint(&self) -> u64 {
+    pub fn fingerprint(&self) -> f64 {
         fingerprint(self.on_1)
     }
 
@@ -85,11 +85,10 @@ impl LastContacts {
 }
 
 /// A number that tells four points from others: a weighted sum of their coordinates. If one coordinate differs by a
-/// rounding of f32, so does the sum, if no other one is
-/// 2^28 times as large.
+/// rounding of f32, so does the sum, if no other one is 2^28 times as large.
 #[inline]
-pub(crate) fn fingerprint(points: DVec3x4) -> u64 {
-    sum(points.dot_each(DVec3x4(WEIGHTS.map(f64x4::new)))).to_bits()
+pub(crate) fn fingerprint(points: DVec3x4) -> f64 {
+    sum(points.dot_each(DVec3x4(WEIGHTS.map(f64x4::new))))
 }
 
 /// Square roots of primes: no two coordinates have weights in a simple ratio.
@@ -98,6 +97,9 @@ const WEIGHTS: [[f64; LANES]; 3] = [
     [3.605_551_3, 4.123_105_6, 4.358_898_9, 4.795_831_5],
     [5.385_164_8, 5.567_764_4, 6.082_762_5, 6.403_124_2],
 ];
+
+/// The weights of a normal in such a sum.
+pub(crate) const NORMAL_WEIGHTS: DVec3 = DVec3::new(6.557_438_5, 6.855_654_6, 7.280_109_9);
 
 /// The index of the least value; of equal ones, the first.
 #[inline]

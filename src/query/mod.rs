@@ -35,7 +35,7 @@ pub(crate) use certificate::flush::{Disc, FlushFaces};
 pub(crate) use certificate::{cone_contains_ball, inset};
 pub(crate) use contact_id::contact_keys;
 pub(crate) use feature::vertices;
-pub(crate) use last_contacts::{LastContacts, fingerprint, first_least};
+pub(crate) use last_contacts::{LastContacts, NORMAL_WEIGHTS, fingerprint, first_least};
 pub(crate) use pipeline::{Distance, Full, Sink};
 pub(crate) use types::{Answer, PairMemory, Proximity, Query, Start};
 pub(crate) use witness::moved_apart;

@@ -12,12 +12,12 @@ use parry3d::math::Pose;
 
 use super::kernel_manifold::KernelManifold;
 use crate::gjk::{self, Outcome};
-use crate::mix::extended;
+use crate::mix::{extended, mix};
 use crate::parry::convert::HalfSpace;
 use crate::parry::still_cache::StillCache;
 use crate::pose::RelativePose;
 use crate::primitive::Point;
-use crate::query::{LastContacts, fingerprint};
+use crate::query::{LastContacts, NORMAL_WEIGHTS, fingerprint};
 use crate::simd::LANES;
 use crate::simplex::Preferred;
 use crate::stats::Cost;
@@ -50,14 +50,31 @@ impl ContactsOnShape<'_> {
     }
 }
 
-/// Tells contacts of shapes from others, by the fingerprint of the contacts and the stored normal: a certificate of contacts
-/// along another normal proves nothing.
-#[inline]
-pub(super) fn tag(shapes: [ShapeId; 2], fingerprint: u64, normal: Vec3) -> u64 {
-    let [first, second] = shapes.map(ShapeId::number);
-    let [x, y, z] = (normal.to_array()).map(|coordinate| u64::from(coordinate.to_bits()));
-    let words = [first, second ^ x << 32, fingerprint, y << 32 | z];
-    words.into_iter().fold(0, extended)
+/// Contacts of two shapes. With their normal, a number tells them from others.
+#[derive(Clone, Copy)]
+pub(super) struct ContactTag {
+    /// Tells the shapes from others.
+    shapes: u64,
+    /// Tells the places from others.
+    fingerprint: f64,
+}
+
+impl ContactTag {
+    #[inline]
+    pub fn new(shapes: [ShapeId; 2], fingerprint: f64) -> Self {
+        let [first, second] = shapes.map(ShapeId::number);
+        Self {
+            shapes: extended(mix(first), second),
+            fingerprint,
+        }
+    }
+
+    /// With a stored normal: a certificate of contacts along another one proves nothing.
+    #[inline]
+    pub fn along(self, normal: Vec3) -> u64 {
+        let both = self.fingerprint + normal.as_dvec3().dot(NORMAL_WEIGHTS);
+        self.shapes ^ both.to_bits()
+    }
 }
 
 /// The normals on the kernels' first shape before and after contacts are measured anew.
@@ -81,8 +98,8 @@ impl KernelManifold<'_, '_> {
         if let [Some(first), Some(second)] = shapes
             && let Some(places) = self.manifold.points().places(self.order)
         {
-            let tag = tag([first, second], fingerprint(places), self.stored_normal());
-            cache.note_own(self.manifold.key(), tag);
+            let tag = ContactTag::new([first, second], fingerprint(places));
+            *cache.own_contacts(self.manifold.key()) = tag.along(self.stored_normal());
         }
     }
 }
@@ -122,10 +139,11 @@ impl OwnCheck<'_> {
         let [Some(first), Some(second)] = shapes else {
             return found();
         };
-        let tag = |normal| tag([first, second], last.fingerprint(), normal);
-        let are_own = self.cache.are_own(self.key, tag(normals.before)) || found();
+        let tag = ContactTag::new([first, second], last.fingerprint());
+        let known = self.cache.own_contacts(self.key);
+        let are_own = *known == tag.along(normals.before) || found();
         if are_own {
-            self.cache.note_own(self.key, tag(normals.after));
+            *known = tag.along(normals.after);
         }
         are_own
     }

@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::erased::ErasedManifold;
 use super::kernel_manifold::KernelManifold;
-use super::own_contacts::{self, ContactsOnShape, some_is_on_both};
+use super::own_contacts::{ContactTag, ContactsOnShape, some_is_on_both};
 use crate::parry::convert::HalfSpace;
 use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
@@ -60,7 +60,8 @@ impl PresentContacts {
             self.still = Some(Still {
                 distances,
                 least,
-                tag: own_contacts::tag(pair.shapes, last.fingerprint(), manifold.stored_normal()),
+                tag: ContactTag::new(pair.shapes, last.fingerprint())
+                    .along(manifold.stored_normal()),
                 pair,
                 are_own: false,
             });
@@ -152,7 +153,7 @@ impl Still {
     pub fn store(&self, cache: &mut StillCache, core_distance: f64) {
         cache.store(&self.pair, self.tag, core_distance);
         if !self.are_own {
-            cache.note_own(self.pair.key, self.tag);
+            *cache.own_contacts(self.pair.key) = self.tag;
         }
     }
 }
