@@ -31,8 +31,8 @@ impl KernelManifold<'_, '_> {
     }
 
     /// Measures the contacts anew where they are. Returns `false`, and changes nothing, if they have to be
-    /// chosen anew. `radius` is that of the smaller shape. `are_own` tells whether contacts belong to the shapes, and is told the normal that is stored
-    /// if so.
+    /// chosen anew. `radius` is that of the smaller shape. `are_own` tells whether contacts belong to the shapes; it gets
+    /// the normal that is stored, and the one that will be if so.
     // perf: a call would pass the normals through memory.
     #[inline(always)]
     pub fn keep_contacts(
