@@ -90,7 +90,7 @@ fn faults(bodies: [&Body; 2], pose: ExactPose, rng: &mut Rng, prediction: f64) -
 #[test]
 fn manifolds_are_right() {
     let mut rng = Rng::new(3400);
-    let gaps = [0.05, 0.005, 1e-6, -1e-6, -0.01, -0.05, -0.2];
+    let gaps = [0.05, 1e-6, -0.01, -0.2];
     let (mut pairs, mut bad, mut worst) = (0, 0, Faults::default());
     for border in [0.0, 0.07] {
         for first in own(&mut rng, border) {
