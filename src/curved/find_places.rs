@@ -130,10 +130,7 @@ impl Patch {
             reference(&piece_1),
             cso.pose.direction_to_1(reference(&piece_2)),
         ];
-        for (corner, _) in &mut *corners_2 {
-            *corner = cso.pose.point_to_1(*corner);
-        }
-        self.pieces = [piece_1, piece_2.to_frame_1(cso.pose)];
+        self.pieces = [piece_1, piece_2.to_frame_1(cso.pose, corners_2)];
         self.border_radii = border_radii;
         self.size = cso.size() + cso.center().length();
     }

@@ -48,4 +48,4 @@ pub use contacts::contacts;
 pub use patch::{ContactPlace, Patch};
 pub use piece::{FlatSide, Outline, Piece};
 pub use query::{CurvedAnswer, CurvedQuery, CurvedScratch, Hint};
-pub use surface_pieces::{CircularEdge, Foot, Ruling, SurfacePieces};
+pub use surface_pieces::{CircularEdge, Foot, Ruling, SurfacePieces, point_on_flat};

@@ -37,10 +37,7 @@ impl Patch {
         let [_, corners] = &mut self.corners;
         corners.clear();
         let piece = solid.piece(towards, vertex, border, corners);
-        for (corner, _) in &mut *corners {
-            *corner = pose.point_to_1(*corner);
-        }
-        self.pieces = [Piece::Flat(plane), piece.to_frame_1(pose)];
+        self.pieces = [Piece::Flat(plane), piece.to_frame_1(pose, corners)];
         self.references = [normal.any_orthonormal_vector(), DVec3::ZERO];
         self.border_radii = [0.0, border];
         self.size = radius + center.length();

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::pose::RelativePose;
 use crate::primitive::nearest_share;
-use crate::support::FaceId;
+use crate::support::{FaceId, VertexId};
 use crate::tolerance::{ON_OUTLINE, SAME_NORMAL};
 
 /// A piece of the surface of a shape, moved outwards by the width of its border.
@@ -122,8 +122,11 @@ impl Piece {
         }))
     }
 
-    /// From frame 2 to frame 1.
-    pub fn to_frame_1(self, pose: &RelativePose) -> Self {
+    /// From frame 2 to frame 1, and so its corners, if it is a polygon.
+    pub fn to_frame_1(self, pose: &RelativePose, corners: &mut [(DVec3, VertexId)]) -> Self {
+        for (corner, _) in corners {
+            *corner = pose.point_to_1(*corner);
+        }
         match self {
             Self::Flat(flat) => {
                 let normal = pose.direction_to_1(flat.normal);

@@ -3,12 +3,11 @@
 use glam::DVec3;
 
 use super::piece::{FlatSide, Outline, Piece};
-use super::surface_pieces::{CircularEdge, Ruling, SurfacePieces};
+use super::surface_pieces::{CircularEdge, Ruling, SurfacePieces, point_on_flat};
 use crate::primitive::nearest_share;
 use crate::query::inset;
 use crate::stats::Cost;
 use crate::support::{FaceId, Polytope, VertexId};
-use crate::tolerance::KEPT_ANGLE_COS;
 use crate::tuning::EDGE_ON;
 
 impl<P: Polytope> SurfacePieces for P {
@@ -38,10 +37,7 @@ impl<P: Polytope> SurfacePieces for P {
             let to = self.vertex(self.face_vertex(face, 1 - vertex.index()));
             return Some(from + (to - from) * nearest_share([from, to], near));
         }
-        let flat = self.flat(dir, vertex)?;
-        let p = near - flat.normal * (flat.normal.dot(near) - flat.offset);
-        let is_on_it = flat.normal.dot(dir) >= KEPT_ANGLE_COS && self.inset(&flat, p) > 0.0;
-        is_on_it.then_some(p)
+        point_on_flat(self, &self.flat(dir, vertex)?, dir, near)
     }
 
     fn ball_at(&self, p: DVec3) -> (DVec3, f64) {

@@ -6,6 +6,7 @@ use super::piece::{FlatSide, Piece};
 use crate::pose::RelativePose;
 use crate::stats::Cost;
 use crate::support::{Cso, Support, VertexId};
+use crate::tolerance::KEPT_ANGLE_COS;
 
 /// The condition that a part of a surface sets for its outward unit normals: `axis · normal = sine`. The
 /// normals of an edge are perpendicular to it. Those of the side of a cylinder or a cone have a fixed angle
@@ -86,6 +87,19 @@ pub trait SurfacePieces: Support {
         border: f64,
         corners: &mut Vec<(DVec3, VertexId)>,
     ) -> Piece;
+}
+
+/// The projection of a point into the plane of a flat side of a shape, if it is on the side, and the normal of the side is
+/// about `dir`.
+pub fn point_on_flat(
+    shape: &impl SurfacePieces,
+    flat: &FlatSide,
+    dir: DVec3,
+    near: DVec3,
+) -> Option<DVec3> {
+    let p = near - flat.normal * (flat.normal.dot(near) - flat.offset);
+    let is_on_it = flat.normal.dot(dir) >= KEPT_ANGLE_COS && shape.inset(flat, p) > 0.0;
+    is_on_it.then_some(p)
 }
 
 impl<'a, A: SurfacePieces, B: SurfacePieces> Cso<'a, A, B> {

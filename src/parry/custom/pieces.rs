@@ -4,11 +4,10 @@ use glam::DVec3;
 
 use super::feature::{ExtremeFeature, MAX_CORNERS};
 use super::shape::{CustomShape, extreme};
-use crate::curved::{CircularEdge, FlatSide, Outline, Piece, Ruling, SurfacePieces};
+use crate::curved::{CircularEdge, FlatSide, Outline, Piece, Ruling, SurfacePieces, point_on_flat};
 use crate::primitive::nearest_share;
 use crate::stats::Cost;
 use crate::support::{FaceId, VertexId};
-use crate::tolerance::KEPT_ANGLE_COS;
 use crate::tuning::EDGE_ON;
 
 /// A face, moved outwards by a border.
@@ -50,9 +49,7 @@ impl SurfacePieces for CustomShape<'_> {
 
     fn point_on_side(&self, dir: DVec3, near: DVec3, _: &mut Cost) -> Option<DVec3> {
         if let Some(flat) = self.flat(dir, VertexId::default()) {
-            let p = near - flat.normal * (flat.normal.dot(near) - flat.offset);
-            let is_on_it = flat.normal.dot(dir) >= KEPT_ANGLE_COS && self.inset(&flat, p) > 0.0;
-            return is_on_it.then_some(p);
+            return point_on_flat(self, &flat, dir, near);
         }
         let [a, b] = self.extreme_edge(dir)?;
         Some(a.lerp(b, nearest_share([a, b], near)))
