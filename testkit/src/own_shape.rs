@@ -14,6 +14,8 @@ pub struct OwnShape {
     pub inner: SharedShape,
     /// Whether it tells its faces and edges, and not only its extreme points.
     pub tells_features: bool,
+    /// What it shows itself as, if that is not a shape of a user's own.
+    pub shown: Option<SharedShape>,
 }
 
 impl SupportMap for OwnShape {
@@ -70,7 +72,10 @@ impl Shape for OwnShape {
     }
 
     fn as_typed_shape(&self) -> TypedShape<'_> {
-        TypedShape::Custom(self)
+        match &self.shown {
+            Some(shown) => shown.as_typed_shape(),
+            None => TypedShape::Custom(self),
+        }
     }
 
     fn ccd_thickness(&self) -> Real {

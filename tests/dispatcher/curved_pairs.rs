@@ -3,12 +3,13 @@
 
 use isa_gjk::{IsaGjkDispatcher, Stage};
 use parry3d::math::Vector;
-use parry3d::shape::SharedShape;
-use testkit::curved::{Body, Faults, Judge, Meeting, tilted};
+use testkit::curved::{Body, Judge, Meeting};
 use testkit::generate::Rng;
-use testkit::memory::{Manifold, Memory, cold_manifold};
+use testkit::memory::Memory;
 use testkit::pair::{FRAMES, PREDICTION, trajectory};
 use testkit::pose::ExactPose;
+
+use crate::tally::Tally;
 
 /// The promise, as a share of the smaller diameter.
 const PROMISE: f64 = 1e-5;
@@ -35,83 +36,18 @@ fn partners(rng: &mut Rng, border: f32) -> Vec<Body> {
     bodies
 }
 
-fn flipped(manifold: &Manifold) -> Manifold {
-    let mut flipped = manifold.clone();
-    (flipped.local_n1, flipped.local_n2) = (manifold.local_n2, manifold.local_n1);
-    for point in &mut flipped.points {
-        (point.local_p1, point.local_p2) = (point.local_p2, point.local_p1);
-    }
-    flipped
-}
-
-/// What is wrong with a pair's manifolds: cold, in the other order, and warm from a pose beside it.
-fn faults(bodies: [&Body; 2], pose: ExactPose, rng: &mut Rng, prediction: f64) -> [Faults; 3] {
-    let dispatcher = IsaGjkDispatcher::default();
-    let judge = Judge::new(bodies, pose);
-    let [a, b]: [&SharedShape; 2] = bodies.map(|body| &body.shape);
-    let reach = prediction as f32;
-    let cold = cold_manifold(&dispatcher, &pose.to_f32(), [a, b], reach);
-    let back = cold_manifold(&dispatcher, &pose.inverse().to_f32(), [b, a], reach);
-    let mut memory = Memory::default();
-    let beside = tilted(pose, rng, 0.01);
-    let aside = ExactPose {
-        translation: pose.translation + rng.direction() * (0.003 * judge.size),
-        ..beside
-    };
-    memory.update(&dispatcher, &aside.to_f32(), [a, b], reach);
-    let warm = memory.update(&dispatcher, &pose.to_f32(), [a, b], reach);
-    // Contacts that stay are off their common line by the drift that they may have.
-    let mut with_past = judge.manifold(warm, prediction);
-    with_past.gap = 0.0;
-    [
-        judge.manifold(cold.as_ref(), prediction),
-        judge.manifold(back.as_ref().map(flipped).as_ref(), prediction),
-        with_past,
-    ]
-}
-
 fn check(border: f32, seed: u128) {
     let mut rng = Rng::new(seed);
     let gaps = [0.05, 0.005, 1e-6, -1e-6, -0.01, -0.05, -0.2];
-    let (mut pairs, mut bad, mut worst) = (0, 0, Faults::default());
+    let mut tally = Tally::new(|faults| faults.are_within(PROMISE));
     for _ in 0..2 {
         for first in curved(&mut rng, border) {
             for second in partners(&mut rng, border) {
-                let size = first.diameter().min(second.diameter());
-                for meeting in Meeting::ALL {
-                    for gap in gaps {
-                        let bodies = [&second, &first];
-                        let Some(pose) = meeting.pose(&mut rng, bodies, gap * size) else {
-                            continue;
-                        };
-                        let found = faults(bodies, pose, &mut rng, 0.06 * size);
-                        pairs += 1;
-                        for (way, faults) in ["cold", "back", "warm"].into_iter().zip(found) {
-                            worst = worst.or(faults);
-                            if !faults.are_within(PROMISE) {
-                                bad += 1;
-                                if bad < 60 {
-                                    println!(
-                                        "{} {} {meeting:?} {gap} {way}: d {:.1e} r {:.1e} g {:.1e} {}{}{}",
-                                        second.name,
-                                        first.name,
-                                        faults.distance,
-                                        faults.regret,
-                                        faults.gap,
-                                        if faults.missing { "missing " } else { "" },
-                                        if faults.phantom { "phantom " } else { "" },
-                                        if faults.not_finite { "not finite" } else { "" },
-                                    );
-                                }
-                            }
-                        }
-                    }
-                }
+                tally.add(&mut rng, [&second, &first], &Meeting::ALL, &gaps);
             }
         }
     }
-    println!("{pairs} pairs, {bad} bad, {worst:?}");
-    assert_eq!(bad, 0);
+    tally.check();
 }
 
 #[test]

@@ -8,10 +8,11 @@ use parry3d::shape::{SharedShape, TriMeshFlags};
 use rapier3d::prelude::*;
 use testkit::curved::{Body, Faults, Judge, Meeting};
 use testkit::generate::Rng;
-use testkit::memory::{Memory, cold_manifold};
+use testkit::memory::cold_manifold;
 use testkit::own_shape::Ellipsoid;
-use testkit::pose::ExactPose;
 use testkit::world::narrow_phase;
+
+use crate::tally::Tally;
 
 /// Of distances and normals, as a share of the smaller diameter.
 const PROMISE: f64 = 1e-5;
@@ -67,65 +68,26 @@ fn partners(rng: &mut Rng) -> Vec<Body> {
     partners
 }
 
-/// What is wrong with a pair's manifolds, and with `contact`.
-fn faults(bodies: [&Body; 2], pose: ExactPose, rng: &mut Rng, prediction: f64) -> [Faults; 2] {
-    let dispatcher = IsaGjkDispatcher::default();
-    let judge = Judge::new(bodies, pose);
-    let shapes = bodies.map(|body| &body.shape);
-    let reach = prediction as f32;
-    let cold = cold_manifold(&dispatcher, &pose.to_f32(), shapes, reach);
-    let mut memory = Memory::default();
-    let aside = ExactPose {
-        translation: pose.translation + rng.direction() * (0.003 * judge.size),
-        ..pose
-    };
-    memory.update(&dispatcher, &aside.rounded().to_f32(), shapes, reach);
-    let warm = memory.update(&dispatcher, &pose.to_f32(), shapes, reach);
-    // Contacts that stay are off their common line by the drift that they may have.
-    let mut with_past = judge.manifold(warm, prediction);
-    with_past.gap = 0.0;
-    [judge.manifold(cold.as_ref(), prediction), with_past]
-}
-
 #[test]
 fn manifolds_are_right() {
     let mut rng = Rng::new(3400);
+    let meetings = [Meeting::Random, Meeting::Square, Meeting::Flat];
     let gaps = [0.05, 1e-6, -0.01, -0.2];
-    let (mut pairs, mut bad, mut worst) = (0, 0, Faults::default());
+    let mut tally = Tally::new(|faults| {
+        let in_place = Faults {
+            gap: 0.0,
+            ..*faults
+        };
+        faults.gap <= PLACES && in_place.are_within(PROMISE)
+    });
     for border in [0.0, 0.07] {
         for first in own(&mut rng, border) {
             for second in partners(&mut rng) {
-                let size = first.diameter().min(second.diameter());
-                for meeting in [Meeting::Random, Meeting::Square, Meeting::Flat] {
-                    for gap in gaps {
-                        let bodies = [&second, &first];
-                        let Some(pose) = meeting.pose(&mut rng, bodies, gap * size) else {
-                            continue;
-                        };
-                        let found = faults(bodies, pose, &mut rng, 0.06 * size);
-                        pairs += 1;
-                        for (way, faults) in ["cold", "warm"].into_iter().zip(found) {
-                            worst = worst.or(faults);
-                            let is_in_place = faults.gap <= PLACES;
-                            let faults = Faults { gap: 0.0, ..faults };
-                            if !is_in_place || !faults.are_within(PROMISE) {
-                                bad += 1;
-                                if bad < 60 {
-                                    println!("{}", found[usize::from(way == "warm")].gap);
-                                    println!(
-                                        "{} {} {meeting:?} {gap} {way}: {faults:?}",
-                                        second.name, first.name
-                                    );
-                                }
-                            }
-                        }
-                    }
-                }
+                tally.add(&mut rng, [&second, &first], &meetings, &gaps);
             }
         }
     }
-    println!("{pairs} pairs, {bad} bad, {worst:?}");
-    assert_eq!(bad, 0);
+    tally.check();
 }
 
 #[test]

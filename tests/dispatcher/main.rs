@@ -45,6 +45,7 @@ mod scene_queries;
 mod sizes;
 mod still;
 mod sunk_plates;
+mod tally;
 mod touching;
 mod unusual_callers;
 mod walk;

@@ -5,19 +5,13 @@ use std::cell::RefCell;
 use std::thread;
 
 use isa_gjk::IsaGjkDispatcher;
-use parry3d::bounding_volume::{Aabb, BoundingSphere};
-use parry3d::mass_properties::MassProperties;
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::NormalConstraints;
-use parry3d::query::{
-    ContactManifold, PointProjection, PointQuery, QueryDispatcher, Ray, RayCast, RayIntersection,
-};
-use parry3d::shape::{
-    Ball, Cuboid, FeatureId, PolygonalFeature, PolygonalFeatureMap, Shape, ShapeType, SharedShape,
-    SupportMap, TypedShape,
-};
+use parry3d::query::{ContactManifold, QueryDispatcher};
+use parry3d::shape::{Ball, Cuboid, SharedShape};
 use testkit::generate::Rng;
 use testkit::memory::{UpdateManifolds, cold_manifold};
+use testkit::own_shape::OwnShape;
 
 /// Asks the dispatcher about its shapes before it lets a normal pass.
 struct Asks {
@@ -101,97 +95,6 @@ fn a_thread_that_ends_may_ask() {
     assert!(DONE.load(std::sync::atomic::Ordering::Relaxed));
 }
 
-/// A ball that shows itself as another shape.
-#[derive(Clone)]
-struct Shows {
-    ball: Ball,
-    shown: SharedShape,
-}
-
-impl RayCast for Shows {
-    fn cast_local_ray_and_get_normal(
-        &self,
-        ray: &Ray,
-        max: Real,
-        solid: bool,
-    ) -> Option<RayIntersection> {
-        self.ball.cast_local_ray_and_get_normal(ray, max, solid)
-    }
-}
-
-impl PointQuery for Shows {
-    fn project_local_point(&self, point: Vector, solid: bool) -> PointProjection {
-        self.ball.project_local_point(point, solid)
-    }
-
-    fn project_local_point_and_get_feature(&self, point: Vector) -> (PointProjection, FeatureId) {
-        self.ball.project_local_point_and_get_feature(point)
-    }
-}
-
-impl SupportMap for Shows {
-    fn local_support_point(&self, direction: Vector) -> Vector {
-        self.ball.local_support_point(direction)
-    }
-}
-
-impl PolygonalFeatureMap for Shows {
-    fn local_support_feature(&self, direction: Vector, feature: &mut PolygonalFeature) {
-        feature.vertices[0] = self.local_support_point(direction);
-        feature.num_vertices = 1;
-    }
-}
-
-impl Shape for Shows {
-    fn compute_local_aabb(&self) -> Aabb {
-        self.ball.compute_local_aabb()
-    }
-
-    fn compute_local_bounding_sphere(&self) -> BoundingSphere {
-        self.ball.compute_local_bounding_sphere()
-    }
-
-    fn clone_dyn(&self) -> Box<dyn Shape> {
-        Box::new(self.clone())
-    }
-
-    fn scale_dyn(&self, _: Vector, _: u32) -> Option<Box<dyn Shape>> {
-        None
-    }
-
-    fn mass_properties(&self, density: Real) -> MassProperties {
-        self.ball.mass_properties(density)
-    }
-
-    fn shape_type(&self) -> ShapeType {
-        ShapeType::Custom
-    }
-
-    fn as_typed_shape(&self) -> TypedShape<'_> {
-        self.shown.as_typed_shape()
-    }
-
-    fn ccd_thickness(&self) -> Real {
-        self.ball.radius
-    }
-
-    fn ccd_angular_thickness(&self) -> Real {
-        0.0
-    }
-
-    fn is_convex(&self) -> bool {
-        true
-    }
-
-    fn as_support_map(&self) -> Option<&dyn SupportMap> {
-        Some(self)
-    }
-
-    fn as_polygonal_feature_map(&self) -> Option<(&dyn PolygonalFeatureMap, Real)> {
-        Some((self, 0.0))
-    }
-}
-
 /// To rapier it may show itself as whatever it likes: what it is its own methods say.
 #[test]
 fn a_shape_is_not_taken_for_what_it_shows() {
@@ -207,7 +110,11 @@ fn a_shape_is_not_taken_for_what_it_shows() {
     ];
     for shown in shown {
         let (ball, name) = (Ball::new(0.1), format!("{:?}", shown.shape_type()));
-        let shape = SharedShape::new(Shows { ball, shown });
+        let shape = SharedShape::new(OwnShape {
+            inner: SharedShape::new(ball),
+            tells_features: false,
+            shown: Some(shown),
+        });
         let cuboid = SharedShape::cuboid(0.5, 0.5, 0.5);
         for other in [&hull, &cuboid] {
             for pose in [1.5, 0.9].map(|x| Pose::translation(x, 0.0, 0.0)) {

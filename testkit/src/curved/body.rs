@@ -125,6 +125,7 @@ impl Body {
         let shape = SharedShape::new(OwnShape {
             inner: self.shape,
             tells_features,
+            shown: None,
         });
         let kind = if tells_features { "own" } else { "smooth" };
         Self {
