@@ -15,7 +15,7 @@ use crate::slots::Slots;
 use crate::support::{Cso, Support};
 use crate::tolerance::PROOF_MARGIN;
 
-/// 4,096 slots, which take 256 KiB.
+/// 4,096 slots, which take 512 KiB.
 const SLOT_BITS: u32 = 12;
 /// 131,072 slots, which take 1 MiB where they are used. All contacts that stay ask for their tag, and to look them up on the
 /// shapes instead costs as much as several queries: with 4,096 slots, a heap of 1,000 took 1.6 times as long.
@@ -25,7 +25,9 @@ const TAG_BITS: u32 = 17;
 /// that of the pair.
 #[derive(Default)]
 pub(crate) struct StillCache {
-    certified: Slots<Certified, SLOT_BITS>,
+    /// Two for each pair: a body that trembles comes back to where it was, and one certificate that is replaced where it
+    /// proves nothing is mostly at an end of its way.
+    certified: Slots<[Certified; 2], SLOT_BITS>,
     /// Tags of contacts and of shapes to which they belong.
     own_contacts: Slots<u64, TAG_BITS>,
 }
@@ -81,12 +83,14 @@ impl StillCache {
     /// tolerance.
     #[inline]
     pub fn proves(&self, pair: &StillPair, tag: u64, distance: f64, tolerance: f64) -> bool {
-        let Some(known) = self.certified.get(pair.key) else {
+        let Some(slot) = self.certified.get(pair.key) else {
             return false;
         };
-        known.tag == tag
-            && is_nearly_unit(pair.rotation)
-            && (known.distance - distance).abs() + known.motion_to(pair) <= tolerance
+        slot.iter().any(|known| {
+            known.tag == tag
+                && is_nearly_unit(pair.rotation)
+                && (known.distance - distance).abs() + known.motion_to(pair) <= tolerance
+        })
     }
 
     /// Whether contacts are known to belong to the shapes of a pair, by their tag.
@@ -101,13 +105,20 @@ impl StillCache {
         self.own_contacts.get_or_allocate(key)
     }
 
-    /// Stores a signed distance that was certified at the present pose, for contacts that belong to the shapes.
+    /// Stores a signed distance that was certified at the present pose, for contacts that belong to the shapes. It replaces
+    /// that of other contacts, or of the pose farthest from the present one.
     #[inline]
     pub fn store(&mut self, pair: &StillPair, tag: u64, distance: f64) {
         if !is_nearly_unit(pair.rotation) {
             return;
         }
-        *self.certified.get_or_allocate(pair.key) = Certified {
+        let slot = self.certified.get_or_allocate(pair.key);
+        let of_others = slot.iter().position(|known| known.tag != tag);
+        let replaced = of_others.unwrap_or_else(|| {
+            let [first, second] = slot.each_ref().map(|known| known.motion_to(pair));
+            usize::from(second > first)
+        });
+        slot[replaced] = Certified {
             rotation: pair.rotation,
             place: pair.place,
             distance,

@@ -220,6 +220,22 @@ fn whether_a_certificate_is_there_does_not_show() {
     assert_eq!(first, None, "of {updates} updates");
 }
 
+/// It is held at both ends of its way, which are farther apart than a certificate reaches.
+#[test]
+fn a_body_that_goes_to_and_fro_is_queried_at_both_ends_once() {
+    const FRAMES: usize = 20;
+    for pair in pairs(1.0) {
+        let dispatcher = IsaGjkDispatcher::default();
+        let mut memory = Memory::default();
+        for frame in 0..FRAMES {
+            let by = Vector::X * [0.0, 8e-6][frame % 2];
+            pair.update(&mut memory, &dispatcher, &pair.pose(Vector::ZERO, by));
+        }
+        let queried = FRAMES as u64 - still(&dispatcher);
+        assert!(queried <= 4, "{}: queried {queried} times", pair.name);
+    }
+}
+
 /// Another shape lies where the first one lay. The manifold is the same.
 #[test]
 fn a_certificate_is_only_that_of_its_shapes() {
