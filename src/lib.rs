@@ -107,6 +107,7 @@ pub mod bevy;
 mod corners;
 mod curved;
 mod epa;
+mod face_planes;
 mod gjk;
 mod hull;
 mod ids;

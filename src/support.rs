@@ -128,9 +128,9 @@ pub trait Polytope: Support {
         None
     }
 
-    /// Whether a ball that touches the plane of a face from inside is known to be in the shape, at little cost.
-    fn holds_ball(&self, _face: FaceId, _center: DVec3, _radius: f64) -> bool {
-        false
+    /// The planes of all faces, if they are at hand.
+    fn face_planes(&self) -> Option<&crate::face_planes::FacePlanes> {
+        None
     }
 
     /// The box that the shape is, if it is known to be one.

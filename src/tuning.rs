@@ -38,6 +38,10 @@ pub(crate) const STILL: f64 = 2e-3;
 /// Of a face with more sides than this, the one in some direction is found by halving.
 pub(crate) const MANY_SIDES: usize = 8;
 
+/// Where the planes of two faces have a smaller squared sine between them (six degrees), f32 hardly tells the place of the
+/// edge: points count as less far inside of it, and corners are looked at instead.
+pub(crate) const CLEAR_BEND: f32 = 1e-2;
+
 /// Contacts tie for the deepest if their distances differ by less than this share of the tolerance of a depth.
 /// Three that tie, and a far one, leave the place between them within the tolerance.
 pub(crate) const FLUSH_TIE: f64 = 0.25;

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::piece::{FlatSide, Generator, Piece, RuledSurface, TangentBall};
 use super::round;
-use super::surface_pieces::{CircularEdge, Foot, Ruling, SurfacePieces};
+use super::surface_pieces::{BorderPlace, CircularEdge, Foot, Ruling, SurfacePieces};
 use crate::primitive::Cone;
 use crate::stats::Cost;
 use crate::support::VertexId;
@@ -33,6 +33,10 @@ impl SurfacePieces for Cone {
         (dir.y < 0.0).then(|| self.base(0.0))
     }
 
+    fn flat_towards(&self, dir: DVec3, _: &mut Cost) -> Option<FlatSide> {
+        self.flat(dir, VertexId::default())
+    }
+
     fn inset(&self, _: &FlatSide, p: DVec3) -> f64 {
         round::inset_of_end(p, self.rim_radius())
     }
@@ -47,6 +51,15 @@ impl SurfacePieces for Cone {
         let [sine, _] = self.lean();
         let is_along = (dir.y - sine).abs() < SMALL_TURN;
         is_along.then(|| round::point_on_circle(dir, height, around))
+    }
+
+    fn border_near(&self, dir: DVec3, near: DVec3) -> Option<BorderPlace> {
+        if dir.y < 0.0 && round::is_along_axis(dir) {
+            return round::rim_near(near, -self.half_height(), self.rim_radius());
+        }
+        let at = self.point_on_side(dir, near, &mut Cost::default())?;
+        let along = DVec3::Y * self.half_height() - at;
+        (along.y > 0.0).then_some(BorderPlace { at, along })
     }
 
     fn ball_at(&self, p: DVec3) -> (DVec3, f64) {

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::piece::{FlatSide, Generator, Piece, RuledSurface, TangentBall};
 use super::round;
-use super::surface_pieces::{CircularEdge, Foot, Ruling, SurfacePieces};
+use super::surface_pieces::{BorderPlace, CircularEdge, Foot, Ruling, SurfacePieces};
 use crate::primitive::Cylinder;
 use crate::stats::Cost;
 use crate::support::VertexId;
@@ -30,6 +30,10 @@ impl SurfacePieces for Cylinder {
         Some(self.cap(dir, 0.0))
     }
 
+    fn flat_towards(&self, dir: DVec3, _: &mut Cost) -> Option<FlatSide> {
+        Some(self.cap(dir, 0.0))
+    }
+
     fn inset(&self, _: &FlatSide, p: DVec3) -> f64 {
         round::inset_of_end(p, self.rim_radius())
     }
@@ -42,6 +46,18 @@ impl SurfacePieces for Cylinder {
         let height = near.y.clamp(-half_height, half_height);
         let is_across = dir.y.abs() < SMALL_TURN;
         is_across.then(|| round::point_on_circle(dir, height, radius))
+    }
+
+    fn border_near(&self, dir: DVec3, near: DVec3) -> Option<BorderPlace> {
+        if round::is_along_axis(dir) {
+            let height = self.half_height().copysign(dir.y);
+            return round::rim_near(near, height, self.rim_radius());
+        }
+        let at = self.point_on_side(dir, near, &mut Cost::default())?;
+        Some(BorderPlace {
+            at,
+            along: DVec3::Y,
+        })
     }
 
     fn ball_at(&self, p: DVec3) -> (DVec3, f64) {

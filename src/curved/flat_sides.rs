@@ -45,7 +45,7 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
         {
             return Some(proved);
         }
-        self.on_crossing(last, normals[0])
+        (self.on_border(last, normals)).or_else(|| self.on_crossing(last, normals[0]))
     }
 }
 

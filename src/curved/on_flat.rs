@@ -35,8 +35,7 @@ impl<'a, 'c, A: SurfacePieces, B: SurfacePieces> OnFlatSide<'a, 'c, A, B> {
             shape_2,
             pose,
         } = cso;
-        let (_, vertex) = shape_1.support(normal, shape_1.start_vertex(normal), cost);
-        let flat = shape_1.flat(normal, vertex)?;
+        let flat = shape_1.flat_towards(normal, cost)?;
         if flat.normal.distance_squared(normal) > SMALL_TURN * SMALL_TURN {
             return None;
         }

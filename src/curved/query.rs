@@ -32,9 +32,8 @@ pub enum Hint {
     None,
     /// The shapes were apart along this unit axis, at these vertices.
     Apart(DVec3, [VertexId; 2]),
-    /// The shapes were in contact along these unit normals, each pointing out of its shape and in its frame;
-    /// and whether their cores overlapped.
-    Contact([DVec3; 2], bool),
+    /// The shapes were in contact along these unit normals, each pointing out of its shape and in its frame.
+    Contact([DVec3; 2]),
 }
 
 impl Hint {
@@ -87,7 +86,7 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
             return Some((CurvedAnswer::SpheresApart, Stage::BoundingSpheres));
         }
         let start = hint.start();
-        if let Hint::Contact(normals, _) = hint
+        if let Hint::Contact(normals) = hint
             && let Some(answer) = self.on_segment().or_else(|| self.at_rest(normals))
         {
             return Some((answer, Stage::Feature));
@@ -109,12 +108,22 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
             ControlFlow::Continue(best) => best,
         };
         // Faces of a polytope that does not contain the origin say nothing about how far it is outside.
-        let is_deep = best.distance <= 0.0 && matches!(hint, Hint::Contact(_, true));
+        let is_deep = best.distance <= 0.0 && self.did_overlap(hint);
         if !is_deep && let Some(found) = self.by_gjk(&at, start) {
             return Some(found);
         }
         let answer = self.by_epa(best, is_deep)?;
         Some((answer, start.epa()))
+    }
+
+    /// Whether the cores still overlap where the last contacts were.
+    fn did_overlap(&self, hint: Hint) -> bool {
+        let Hint::Contact([normal, _]) = hint else {
+            return false;
+        };
+        let borders = self.border_radii[0] + self.border_radii[1];
+        self.last
+            .is_some_and(|last| last.least(normal) + borders < 0.0)
     }
 
     /// The separation along the remembered axis or normal, or along the line of centres.
@@ -126,7 +135,7 @@ impl<A: SurfacePieces, B: SurfacePieces> CurvedQuery<'_, '_, A, B> {
                 (axis, cso.start_vertices(axis))
             }
             Hint::Apart(axis, ids) => (axis, cso.clamp_vertices(ids)),
-            Hint::Contact([normal, _], _) => (normal, cso.start_vertices(normal)),
+            Hint::Contact([normal, _]) => (normal, cso.start_vertices(normal)),
         };
         let start = CsoVertex {
             ids,

@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::piece::{FlatSide, Outline};
+use super::surface_pieces::BorderPlace;
 use crate::tuning::SMALL_TURN;
 
 /// The disc at an end, with the outward normal along the axis.
@@ -38,6 +39,15 @@ pub(super) fn point_on_end(near: DVec3, height: f64, radius: f64) -> Option<DVec
 pub(super) fn point_on_circle(dir: DVec3, height: f64, radius: f64) -> DVec3 {
     let across = dir.with_y(0.0);
     (across * (radius / across.length_squared().sqrt())).with_y(height)
+}
+
+/// The point of a rim at a height that is nearest to a point, unless that is on the axis.
+pub(super) fn rim_near(near: DVec3, height: f64, radius: f64) -> Option<BorderPlace> {
+    let across = near.with_y(0.0).try_normalize()?;
+    Some(BorderPlace {
+        at: (across * radius).with_y(height),
+        along: DVec3::new(across.z, 0.0, -across.x),
+    })
 }
 
 /// The squared length of the part of `v` that turns a point about the axis. `across` leads to the point.

@@ -30,6 +30,15 @@ pub struct CircularEdge {
     pub radius: f64,
 }
 
+/// A place on the outline of a flat side, or on a line of a ruled side.
+#[derive(Clone, Copy, Debug)]
+pub struct BorderPlace {
+    /// Where it is.
+    pub at: DVec3,
+    /// Along the outline or the line, of any length.
+    pub along: DVec3,
+}
+
 /// The nearest point of a solid to a point outside of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Foot {
@@ -45,11 +54,23 @@ pub trait SurfacePieces: Support {
     /// The flat side at `vertex` whose normal is nearest to `dir`. `vertex` is extreme along `dir`.
     fn flat(&self, dir: DVec3, vertex: VertexId) -> Option<FlatSide>;
 
+    /// The flat side whose normal is nearest to `dir`, at whatever vertex.
+    fn flat_towards(&self, dir: DVec3, cost: &mut Cost) -> Option<FlatSide> {
+        let (_, vertex) = self.support(dir, self.start_vertex(dir), cost);
+        self.flat(dir, vertex)
+    }
+
     /// The distance of a point in the plane of a flat side from its outline. Zero or negative outside.
     fn inset(&self, flat: &FlatSide, p: DVec3) -> f64;
 
     /// A point near `near` on the flat or ruled side whose normal is about `dir`.
     fn point_on_side(&self, dir: DVec3, near: DVec3, cost: &mut Cost) -> Option<DVec3>;
+
+    /// The place near `near` on the outline of the flat side whose normal is about `dir`, or on the line of the ruled side.
+    fn border_near(&self, dir: DVec3, near: DVec3) -> Option<BorderPlace> {
+        let _ = (dir, near);
+        None
+    }
 
     /// The centre and radius of a ball inside the shape that touches the surface at `p`, a point of a ruled
     /// side. On other pieces, `p` itself with radius zero.

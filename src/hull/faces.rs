@@ -5,9 +5,9 @@ use std::sync::OnceLock;
 use glam::{DVec3, Vec3};
 
 use super::clusters::FaceClusters;
-use super::face_planes::FacePlanes;
 use super::graph::{FaceCorner, NO_EDGE, pack_edge};
 use crate::at::At;
+use crate::face_planes::FacePlanes;
 use crate::oriented_box::OrientedBox;
 use crate::support::{EdgeId, FaceCorners, FaceId, VertexId};
 
@@ -114,10 +114,10 @@ impl Faces {
         OrientedBox::with_corners(points, normals, radius).map(Box::new)
     }
 
-    /// Whether a ball that touches the plane of a face from inside is known to be beneath all other planes.
+    /// The planes of all faces.
     #[inline]
-    pub fn hold_ball(&self, face: FaceId, center: DVec3, radius: f64) -> bool {
-        self.planes.are_beyond(face, center, radius)
+    pub fn planes(&self) -> &FacePlanes {
+        &self.planes
     }
 
     pub fn len(&self) -> usize {

@@ -6,7 +6,6 @@ mod climb;
 mod cluster_growth;
 mod clusters;
 mod error;
-mod face_planes;
 mod faces;
 mod graph;
 mod lists;
@@ -18,6 +17,7 @@ pub use error::HullError;
 
 use glam::{DVec3, Vec3};
 
+use crate::face_planes::FacePlanes;
 use crate::oriented_box::OrientedBox;
 use crate::stats::Cost;
 use crate::support::{
@@ -247,8 +247,8 @@ impl Polytope for Hull {
     }
 
     #[inline]
-    fn holds_ball(&self, face: FaceId, center: DVec3, radius: f64) -> bool {
-        self.faces.hold_ball(face, center, radius)
+    fn face_planes(&self) -> Option<&FacePlanes> {
+        Some(self.faces.planes())
     }
 
     #[inline]

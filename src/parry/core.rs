@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::curved::{CircularEdge, FlatSide, Piece, Ruling, SurfacePieces};
+use crate::curved::{BorderPlace, CircularEdge, FlatSide, Piece, Ruling, SurfacePieces};
 use crate::parry::convert::Core;
 use crate::stats::Cost;
 use crate::support::{Support, VertexId};
@@ -64,12 +64,20 @@ impl SurfacePieces for Core<'_> {
         of_shape!(self, shape => shape.flat(dir, vertex))
     }
 
+    fn flat_towards(&self, dir: DVec3, cost: &mut Cost) -> Option<FlatSide> {
+        of_shape!(self, shape => shape.flat_towards(dir, cost))
+    }
+
     fn inset(&self, flat: &FlatSide, p: DVec3) -> f64 {
         of_shape!(self, shape => shape.inset(flat, p))
     }
 
     fn point_on_side(&self, dir: DVec3, near: DVec3, cost: &mut Cost) -> Option<DVec3> {
         of_shape!(self, shape => shape.point_on_side(dir, near, cost))
+    }
+
+    fn border_near(&self, dir: DVec3, near: DVec3) -> Option<BorderPlace> {
+        of_shape!(self, shape => shape.border_near(dir, near))
     }
 
     fn ball_at(&self, p: DVec3) -> (DVec3, f64) {

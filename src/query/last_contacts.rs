@@ -45,6 +45,14 @@ impl LastContacts {
         first_least(self.distances(normal).to_array())
     }
 
+    /// The points of the contact that is deepest along a normal, on shape 1 and on shape 2.
+    pub fn deepest_points(&self, normal: DVec3) -> [DVec3; 2] {
+        let lane = self.deepest(normal);
+        let of = |points: DVec3x4| DVec3::from(points.0.map(|row| row.to_array()[lane]));
+        let on_1 = of(self.on_1);
+        [on_1, on_1 + of(self.between)]
+    }
+
     /// The least distance along a normal.
     #[inline]
     pub fn least(&self, normal: DVec3) -> f64 {

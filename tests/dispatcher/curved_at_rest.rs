@@ -20,11 +20,21 @@ fn grounds() -> Vec<Body> {
         half * Vector::new(side(0), side(1), side(2))
     };
     let corners: Vec<Vector> = (0..8).map(corner).collect();
+    let around = |i: u8| {
+        let angle = f32::from(i % 24) * std::f32::consts::TAU / 24.0;
+        Vector::new(
+            0.5 * angle.cos(),
+            if i < 24 { 0.5 } else { -0.5 },
+            0.5 * angle.sin(),
+        )
+    };
+    let of_24_sides: Vec<Vector> = (0..48).map(around).collect();
     let level = |x: Real, z: Real| Vector::new(x, 0.5, z);
     vec![
         Body::cuboid(half, 0.0),
         Body::cuboid(Vector::new(0.3, 0.4, 0.5), 0.1),
         Body::hull(&corners, 0.0).expect("a solid"),
+        Body::hull(&of_24_sides, 0.0).expect("a prism"),
         Body::cylinder(0.5, 0.4, 0.0),
         Body::triangle([level(-1.0, 1.0), level(1.0, 1.0), level(0.0, -1.3)], 0.0),
     ]
@@ -108,11 +118,11 @@ const PLACES: [(Real, Real); 4] = [(0.0, 1e-3), (0.02, -1e-3), (0.3, -1e-3), (0.
 const FLAT: [Tremble; 2] = [
     Tremble {
         noise: 1e-6,
-        supports: 4.2,
+        supports: 1.5,
     },
     Tremble {
         noise: 2e-5,
-        supports: 7.0,
+        supports: 5.0,
     },
 ];
 

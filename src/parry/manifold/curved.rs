@@ -9,7 +9,7 @@ use super::normals::Normals;
 use super::own_contacts::{OwnCheck, ids};
 use super::still::{PresentContacts, Still};
 use super::update::UpdateManifold;
-use crate::curved::{self, CurvedAnswer, CurvedQuery, Patch, SurfacePieces};
+use crate::curved::{self, CurvedAnswer, CurvedQuery, Hint, Patch, SurfacePieces};
 use crate::manifold::Contacts;
 use crate::parry::constraints::{ConstrainedPair, Constraints, Corrected};
 use crate::parry::pair::{Pair, valid_pose};
@@ -38,7 +38,7 @@ impl UpdateManifold<'_> {
         if self.hold_if_proved(pair, at, &mut present, &workspace.still_cache, still_pair) {
             return Ok(());
         }
-        self.query_curved(pair, &cso, max_distance, present, workspace)
+        self.query_curved(pair, &cso, max_distance, &mut present, workspace)
     }
 
     /// Up to a maximum distance of the shapes with their borders.
@@ -47,7 +47,7 @@ impl UpdateManifold<'_> {
         pair: &Pair<'_, B, A>,
         cso: &Cso<'_, A, B>,
         max_distance: f64,
-        mut present: PresentContacts,
+        present: &mut PresentContacts,
         workspace: &mut Workspace,
     ) -> Result<(), Unsupported> {
         let borders = pair.border_radii[0] + pair.border_radii[1];
@@ -58,7 +58,7 @@ impl UpdateManifold<'_> {
         }
         let mut cost = Cost::default();
         let last = present.last.as_ref();
-        let hint = manifold.hint(last, borders);
+        let hint = manifold.hint(last);
         let mut query = CurvedQuery {
             cso,
             border_radii: pair.border_radii,
@@ -84,6 +84,7 @@ impl UpdateManifold<'_> {
                     on_1,
                     max_distance,
                     last,
+                    hint,
                 };
                 let constraints = (self.constraints, self.pos12);
                 let still = present.still.as_ref();
@@ -108,6 +109,7 @@ struct Near<'a, 'c, A, B> {
     on_1: DVec3,
     max_distance: f64,
     last: Option<&'a LastContacts>,
+    hint: Hint,
 }
 
 impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
@@ -169,7 +171,7 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         let are_own =
             |last: &LastContacts, normals| check.passes(cso, self.border_radii, last, normals);
         let (last, radius) = (self.last, cso.min_radius());
-        !manifold.has_rolled(cso, normals.exact)
+        !matches!(self.hint, Hint::Contact(before) if cso.rolls(before, normals.exact))
             && (manifold.keep_places(last, self.least, normals, radius, are_own)).is_some()
     }
 

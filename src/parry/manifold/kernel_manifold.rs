@@ -149,13 +149,10 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
         }
     }
 
-    /// The memory of a pair with a curved shape, and its contacts. The cores may be apart although the shapes, with their `borders`,
-    /// overlap.
-    pub fn hint(&self, last: Option<&LastContacts>, borders: f64) -> Hint {
+    /// The memory of a pair with a curved shape, and its contacts.
+    pub fn hint(&self, last: Option<&LastContacts>) -> Hint {
         match (last, self.normals()) {
-            (Some(last), Some(normals)) => {
-                Hint::Contact(normals, last.least(normals[0]) + borders < 0.0)
-            }
+            (Some(_), Some(normals)) => Hint::Contact(normals),
             (Some(_), None) => Hint::None,
             (None, _) => match self.memory(None) {
                 PairMemory::Axis(axis, ids) => Hint::Apart(axis, ids),

@@ -142,11 +142,13 @@ impl FacetTest {
         let depth = -signed_distance - self.tolerance;
         // The difference contains a copy of the first shape around the vertex of the second one.
         let ball = if depth > 0.0 { on_2 } else { near.on_1 };
-        if cso.shape_1.holds_ball(face, ball, depth.max(0.0)) {
+        let planes = cso.shape_1.face_planes();
+        let holds = |center, r| planes.is_some_and(|planes| planes.hold_ball(face, center, r));
+        if holds(ball, depth.max(0.0)) {
             return true;
         }
         if depth >= SHALLOW * cso.shape_1.radius() {
-            return are_deep_boxes(cso, depth) && cso.shape_1.holds_ball(face, near.on_1, 0.0);
+            return are_deep_boxes(cso, depth) && holds(near.on_1, 0.0);
         }
         let (corners, radius) = (cso.shape_1.face_corners(face), cso.shape_1.radius());
         let mut flush_faces_prove = |is_over: bool| {
