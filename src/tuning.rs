@@ -128,6 +128,10 @@ pub(crate) const LONGEST_STEP: f64 = 0.5;
 /// Each step of Newton's method doubles the number of correct digits.
 pub(crate) const MAX_NEWTON_STEPS: usize = 5;
 
+/// The most steps to the face of a user's own shape under some place: two suffice within four corners that parry's hulls
+/// have merged. On a round side there is no end to them.
+pub(crate) const MAX_PORTALS: usize = 6;
+
 /// The most steps to the nearest place of a segment: three or four usually suffice, twice as many where one crosses a rim
 /// at a small angle.
 pub(crate) const MAX_SEGMENT_STEPS: usize = 12;

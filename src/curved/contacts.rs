@@ -1,8 +1,8 @@
 //! The choice of the places of a patch that become contacts.
 //!
-//! The rule is that of `manifold/reduce.rs`, except that low places do not come first. That one works in f32 on four
-//! corners at once, which only pays for the many corners of polygons. A curved patch has few places, in f64, and each
-//! comes with its points and features.
+//! The rule is that of `manifold/reduce.rs`, except that low places come first only where both pieces are polygons. That
+//! one works in f32 on four corners at once, which only pays for the many corners of polygons. A curved patch has few
+//! places, in f64, and each comes with its points and features.
 
 use glam::{DVec2, DVec3};
 
@@ -13,7 +13,7 @@ use crate::query::Feature;
 use crate::simd::f32x4;
 use crate::support::FaceId;
 use crate::tolerance::SAME_GAP;
-use crate::tuning::SAME_POINT;
+use crate::tuning::{CORNER_RISE, SAME_POINT};
 
 /// Up to four contacts of a patch. The deepest place comes first, then places within `max_distance` that are
 /// spread out, then the nearest of the others. A query found that the shapes, with their borders, are `least`
@@ -40,7 +40,9 @@ pub fn contacts(
         places: [first; MAX_POINTS],
         count: 1,
     };
-    chosen.spread(&patch.places, max_distance);
+    let low_first = patch.is_of_polygons() && patch.places.len() > MAX_POINTS;
+    let rise = if low_first { CORNER_RISE.into() } else { 0.0 };
+    chosen.spread(&patch.places, max_distance, rise);
     chosen.fill(&patch.places);
     chosen.contacts(pose, least)
 }
@@ -51,6 +53,11 @@ struct PlanarPlaces<'a> {
     max_distance: f64,
     origin: DVec3,
     axes: [DVec3; 2],
+    /// By how much the distance grows from the origin, where it is `level`, towards other places.
+    slope: DVec2,
+    level: f64,
+    /// How much nearer a place counts for its height above that.
+    rise: f64,
 }
 
 impl<'a> PlanarPlaces<'a> {
@@ -59,12 +66,21 @@ impl<'a> PlanarPlaces<'a> {
         DVec2::from(self.axes.map(|axis| offset.dot(axis)))
     }
 
-    /// The place within reach with the greatest measure, if that is above `least`.
-    fn farthest(&self, least: f64, measure: impl Fn(DVec2) -> f64) -> Option<&'a ContactPlace> {
-        let mut best = (least, None);
+    /// The place within reach with the greatest measure, if that is above `least`. The measure is the distance from
+    /// something times `length`.
+    fn farthest(
+        &self,
+        length: f64,
+        least: f64,
+        measure: impl Fn(DVec2) -> f64,
+    ) -> Option<&'a ContactPlace> {
+        let mut best = (f64::NEG_INFINITY, None);
         for place in self.places {
-            let value = measure(self.at(place));
-            if place.distance <= self.max_distance && value > best.0 {
+            let at = self.at(place);
+            let far = measure(at);
+            let height = place.distance - self.level - self.slope.dot(at);
+            let value = far - self.rise * length * height.max(0.0);
+            if place.distance <= self.max_distance && far > least && value > best.0 {
                 best = (value, Some(place));
             }
         }
@@ -106,30 +122,39 @@ impl<'a> Chosen<'a> {
     }
 
     /// Adds places that span a large area with the first one: the farthest from it, and the farthest from the
-    /// line through both, on either side. If one side is empty, the place that extends the triangle most.
-    fn spread(&mut self, places: &'a [ContactPlace], max_distance: f64) {
+    /// line through both, on either side. If one side is empty, the place that extends the triangle most. Each counts
+    /// as nearer by `rise` times its height.
+    fn spread(&mut self, places: &'a [ContactPlace], max_distance: f64, rise: f64) {
         let u = self.normal.any_orthonormal_vector();
-        let projected = PlanarPlaces {
+        let mut projected = PlanarPlaces {
             places,
             max_distance,
             origin: self.places[0].on_1,
             axes: [u, self.normal.cross(u)],
+            slope: DVec2::ZERO,
+            level: self.places[0].distance,
+            rise,
         };
-        let Some(far) = projected.farthest(self.same * self.same, |p| p.length_squared()) else {
+        let Some(far) = projected.farthest(1.0, self.same, DVec2::length) else {
             return;
         };
         let line = projected.at(far);
-        let least = self.same * line.length();
-        let sides = [1.0, -1.0].map(|sign| projected.farthest(least, |p| sign * line.perp_dot(p)));
+        let length = line.length();
+        projected.slope = line * ((far.distance - projected.level) / (length * length));
+        let beyond = |measure: &dyn Fn(DVec2) -> f64| {
+            projected.farthest(length, self.same * length, measure)
+        };
+        let sides = [1.0, -1.0].map(|sign| beyond(&|p| sign * line.perp_dot(p)));
+        let last = match sides {
+            [Some(side), None] | [None, Some(side)] => {
+                beyond(&|p| added_area(p, line, projected.at(side)))
+            }
+            _ => None,
+        };
         self.push(far);
         sides.into_iter().flatten().for_each(|side| self.push(side));
-        if let [Some(side), None] | [None, Some(side)] = sides {
-            let beyond = |p| added_area(p, line, projected.at(side));
-            if let Some(last) = projected.farthest(least, beyond)
-                && self.is_new(last)
-            {
-                self.push(last);
-            }
+        if let Some(last) = last.filter(|last| self.is_new(last)) {
+            self.push(last);
         }
     }
 

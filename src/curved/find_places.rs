@@ -40,8 +40,7 @@ impl Patch {
         }
         self.find_extreme(cso);
         self.places.clear();
-        self.find_pieces(cso, border_radii);
-        self.add_common();
+        self.find_rounded(cso, border_radii);
         self.found = Found::All;
     }
 
@@ -93,8 +92,7 @@ impl Patch {
             .filter(|place| place.distance <= limit)
             .copied();
         self.places.clear();
-        self.find_pieces(cso, border_radii);
-        self.add_common();
+        self.find_rounded(cso, border_radii);
         self.add_extremes();
         if let Some(core) = deepest {
             self.places.push(ContactPlace {
@@ -103,6 +101,28 @@ impl Patch {
                 distance: core.distance - self.borders(),
                 features: [Spot::Extreme(VertexId::default()).feature(); 2],
             });
+        }
+    }
+
+    /// Finds the pieces of shapes with borders, and the places where whole pieces overlap. Sides that are polygons have
+    /// round edges: the places of two of them are those of the cores, on the borders over these.
+    fn find_rounded<A: SurfacePieces, B: SurfacePieces>(
+        &mut self,
+        cso: &Cso<'_, A, B>,
+        border_radii: [f64; 2],
+    ) {
+        self.find_pieces(cso, border_radii);
+        let outward_2 = -cso.pose.direction_to_2(self.normal);
+        if self.is_of_polygons()
+            && cso.shape_1.ends_at_edges(self.normal)
+            && cso.shape_2.ends_at_edges(outward_2)
+        {
+            self.find_pieces(cso, [0.0; 2]);
+            self.add_common();
+            self.lift_onto_borders(border_radii);
+            self.find_pieces(cso, border_radii);
+        } else {
+            self.add_common();
         }
     }
 

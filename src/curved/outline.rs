@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::piece::{FlatSide, Outline};
+use crate::manifold::FaceBorder;
 use crate::support::VertexId;
 use crate::tolerance::ON_OUTLINE;
 
@@ -82,8 +83,18 @@ impl Flat<'_> {
         nearest.1.cross(self.side.normal)
     }
 
+    /// The border around a polygon of a core.
+    pub fn border(&self, width: f64) -> FaceBorder<impl Iterator<Item = [DVec3; 2]> + Clone> {
+        FaceBorder {
+            sides: self.edges(),
+            outward: self.side.normal,
+            offset: self.side.offset,
+            width,
+        }
+    }
+
     /// Both corners of each edge.
-    fn edges(&self) -> impl Iterator<Item = [DVec3; 2]> {
+    fn edges(&self) -> impl Iterator<Item = [DVec3; 2]> + Clone {
         let last = self.corners.last().map_or(DVec3::ZERO, |corner| corner.0);
         self.corners.iter().scan(last, |from, &(to, _)| {
             let edge = [*from, to];

@@ -116,6 +116,13 @@ impl Patch {
         self.deepest().map(|place| (place.on_1, place.distance))
     }
 
+    /// Whether both pieces are polygons.
+    pub(super) fn is_of_polygons(&self) -> bool {
+        let is_polygon =
+            |piece: &Piece| matches!(piece, Piece::Flat(flat) if flat.outline.circle().is_none());
+        self.pieces.iter().all(is_polygon)
+    }
+
     /// A direction in the plane of a flat side that is fixed in the frame of its shape.
     pub(super) fn reference(&self, shape: usize) -> DVec3 {
         self.references[shape]

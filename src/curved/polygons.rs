@@ -1,5 +1,7 @@
 //! Contacts of polygons with each other.
 
+use std::mem;
+
 use glam::DVec3;
 
 use super::patch::Patch;
@@ -20,6 +22,25 @@ impl Patch {
             let [from, to] = [i, (i + 1) % count].map(|i| self.corners[1][i].0);
             self.add_crossings(i, [from, to]);
         }
+    }
+
+    /// Moves the places of the cores along the normal, onto borders of these widths.
+    pub(super) fn lift_onto_borders(&mut self, widths: [f64; 2]) {
+        let mut places = mem::take(&mut self.places);
+        for place in &mut places {
+            let height = |shape: usize, point| {
+                let flat = self.flat(shape)?;
+                let border = flat.border(widths[shape]);
+                Some(border.height_over(point, self.outward(shape)))
+            };
+            let (Some(first), Some(second)) = (height(0, place.on_1), height(1, place.on_2)) else {
+                continue;
+            };
+            place.on_1 += self.normal * first;
+            place.on_2 -= self.normal * second;
+            place.distance -= first + second;
+        }
+        self.places = places;
     }
 
     /// The points where an edge of the second polygon crosses the outline of the first.

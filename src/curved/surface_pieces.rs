@@ -63,6 +63,12 @@ pub trait SurfacePieces: Support {
     /// The distance of a point in the plane of a flat side from its outline. Zero or negative outside.
     fn inset(&self, flat: &FlatSide, p: DVec3) -> f64;
 
+    /// Whether the polygon whose normal is nearest to `dir` is a whole flat side, which ends at edges of the shape.
+    fn ends_at_edges(&self, dir: DVec3) -> bool {
+        let _ = dir;
+        true
+    }
+
     /// A point near `near` on the flat or ruled side whose normal is about `dir`.
     fn point_on_side(&self, dir: DVec3, near: DVec3, cost: &mut Cost) -> Option<DVec3>;
 

@@ -1,15 +1,12 @@
 //! Contacts of rounded shapes, moved from the faces of the cores onto the borders around them.
-//!
-//! The border of a face is a plate over it, cylinders around its sides and balls around its corners. Seen along a
-//! contact normal that is not the face's, the last of these is higher over a point of the face than the border is wide.
 
 use glam::{DVec3, Vec3};
 
 use super::contacts::Contacts;
+use super::face_border::FaceBorder;
 use crate::query::Feature;
 use crate::simd::f32x4;
 use crate::support::{Cso, FaceId, Polytope};
-use crate::tuning::EDGE_ON;
 
 impl Contacts {
     /// Moves the points so that they are on the borders once each has been moved by the border's width along its
@@ -110,55 +107,19 @@ impl<S: Polytope> Border<'_, S> {
 
     /// How high the border of a face reaches over a point.
     fn height_over(&self, face: FaceId, point: DVec3) -> f64 {
-        let around = sides(self.core, face).map(|ends| {
-            let ends = ends.map(|end| end - point);
-            let ball = last_crossing(ends[0], self.normal, self.width).unwrap_or(0.0);
-            ball.max(self.cylinder_over_origin(ends))
-        });
-        around.fold(self.plate_over(face, point), f64::max)
-    }
-
-    /// How high the plate over a face reaches over a point; 0 if it is not over it.
-    fn plate_over(&self, face: FaceId, point: DVec3) -> f64 {
-        let outward = self.core.face_normal(face);
-        let cos = outward.dot(self.normal);
-        if cos < EDGE_ON {
-            return 0.0;
-        }
-        let beneath = self.core.face_offset(face) - outward.dot(point);
-        let height = (self.width + beneath) / cos;
-        let foot = point + self.normal * height - outward * self.width;
-        let is_inside = sides(self.core, face)
-            .all(|[from, to]| outward.dot((to - from).cross(foot - from)) >= 0.0);
-        if is_inside { height } else { 0.0 }
-    }
-
-    /// How high the cylinder between two points reaches over the origin; 0 if it is not over it.
-    fn cylinder_over_origin(&self, [from, to]: [DVec3; 2]) -> f64 {
-        let along = to - from;
-        let length_squared = along.length_squared();
-        let across = |v: DVec3| v - along * (v.dot(along) / length_squared);
-        let height = last_crossing(across(from), across(self.normal), self.width);
-        height
-            .filter(|height| {
-                let share = (self.normal * *height - from).dot(along);
-                (0.0..=length_squared).contains(&share)
-            })
-            .unwrap_or(0.0)
+        let border = FaceBorder {
+            sides: sides(self.core, face),
+            outward: self.core.face_normal(face),
+            offset: self.core.face_offset(face),
+            width: self.width,
+        };
+        border.height_over(point, self.normal)
     }
 }
 
 /// The sides of a face.
-fn sides(shape: &impl Polytope, face: FaceId) -> impl Iterator<Item = [DVec3; 2]> {
+fn sides(shape: &impl Polytope, face: FaceId) -> impl Iterator<Item = [DVec3; 2]> + Clone {
     let corners = shape.face_points(face);
     let next = corners.clone().cycle().skip(1);
     corners.zip(next).map(|(from, to)| [from, to])
-}
-
-/// The greatest `t` at which `t * way` is at this distance from a point.
-fn last_crossing(from: DVec3, way: DVec3, distance: f64) -> Option<f64> {
-    let (squared, nearest) = (way.length_squared(), from.dot(way));
-    let rest = nearest * nearest - squared * (from.length_squared() - distance * distance);
-    let crossing = (nearest + rest.sqrt()) / squared;
-    crossing.is_finite().then_some(crossing)
 }

@@ -15,6 +15,7 @@ mod clip_vertices;
 mod contact_frame;
 mod contacts;
 mod corrected;
+mod face_border;
 mod half_space;
 mod outline;
 mod patch;
@@ -35,6 +36,7 @@ use reduce::{Candidates, Selection};
 
 pub use contacts::{ContactPoint, Contacts, MAX_POINTS};
 pub use corrected::contacts_along;
+pub use face_border::FaceBorder;
 pub use half_space::{half_space_contacts, half_space_polygon};
 pub use outline::{PatchCorner, contact_polygon};
 pub use scratch::ClipScratch;

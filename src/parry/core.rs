@@ -72,6 +72,10 @@ impl SurfacePieces for Core<'_> {
         of_shape!(self, shape => shape.inset(flat, p))
     }
 
+    fn ends_at_edges(&self, dir: DVec3) -> bool {
+        of_shape!(self, shape => shape.ends_at_edges(dir))
+    }
+
     fn point_on_side(&self, dir: DVec3, near: DVec3, cost: &mut Cost) -> Option<DVec3> {
         of_shape!(self, shape => shape.point_on_side(dir, near, cost))
     }

@@ -2,7 +2,7 @@
 //! fallback that is not parry's.
 
 use isa_gjk::{IsaGjkDispatcher, Left};
-use parry3d::math::{Pose, Vector};
+use parry3d::math::{Pose, Rotation, Vector};
 use parry3d::query::{DefaultQueryDispatcher, QueryDispatcher, ShapeCastOptions};
 use parry3d::shape::{SharedShape, TriMeshFlags};
 use rapier3d::prelude::*;
@@ -200,6 +200,96 @@ fn own_bodies_rest() {
             assert!(body.linvel().length() < 0.05, "{kind}: {}", body.linvel());
         }
     }
+}
+
+/// A rounded box that leans on an edge of it stands on both ends of this edge.
+#[test]
+fn rounded_edges_bear_at_both_ends() {
+    let ground = SharedShape::cuboid(4.0, 0.5, 4.0);
+    let rounded = Body::cuboid(Vector::new(0.3, 0.15, 0.2), 0.05).as_own(true);
+    let dispatcher = IsaGjkDispatcher::default();
+    for degrees in [3.0_f32, 20.0, 45.0] {
+        let turn = Rotation::from_axis_angle(Vector::Z, degrees.to_radians());
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let lowest = 0.3 * sin + 0.15 * cos;
+        let pose = Pose::from_parts(Vector::Y * (0.5 + lowest + 0.05 - 1e-3), turn);
+        let manifold = cold_manifold(&dispatcher, &pose, [&ground, &rounded.shape], 0.02);
+        let mut points = manifold.expect("a contact").points;
+        points.sort_by(|a, b| a.dist.total_cmp(&b.dist));
+        let [first, second] = [points[0], points[1]];
+        assert!(
+            (first.dist + 1e-3).abs() < 1e-5,
+            "{degrees}: {}",
+            first.dist
+        );
+        assert!(
+            (second.dist - first.dist).abs() < 1e-5,
+            "{degrees}: {}",
+            second.dist
+        );
+        assert!(
+            (first.local_p2.z - second.local_p2.z).abs() > 0.39,
+            "{degrees}"
+        );
+    }
+}
+
+/// Heaps of hulls in disguise, rounded or not, rest about as soon as the default's.
+#[test]
+fn heaps_of_own_bodies_rest() {
+    for border in [0.0, 0.008] {
+        let (mut ours, mut default) = (0, 0);
+        for seed in 1..4 {
+            ours += frames_until_rest(narrow_phase(&IsaGjkDispatcher::default()), border, seed);
+            default += frames_until_rest(NarrowPhase::new(), border, seed);
+        }
+        let limit = default + default / 4 + 3 * 30;
+        assert!(ours <= limit, "border {border}: {ours}, default {default}");
+    }
+}
+
+/// How many steps pass until 19 of 20 bodies in a pen sleep.
+fn frames_until_rest(narrow_phase: NarrowPhase, border: f32, seed: u128) -> usize {
+    let mut rng = Rng::new(seed);
+    let mut world = PhysicsWorld {
+        narrow_phase,
+        ..PhysicsWorld::default()
+    };
+    let half = 0.42;
+    let floor = ColliderBuilder::cuboid(2.0, 0.5, 2.0).translation(Vector::Y * -0.5);
+    world.insert_collider(floor, None);
+    for (side, thickness) in [Vector::X, -Vector::X, Vector::Z, -Vector::Z]
+        .map(|side| (side, side.abs() * 0.5 + (Vector::ONE - side.abs()) * 2.0))
+    {
+        let wall = ColliderBuilder::cuboid(thickness.x, thickness.y, thickness.z);
+        world.insert_collider(
+            wall.translation(side * (half + 0.5) + Vector::Y * 2.0),
+            None,
+        );
+    }
+    let bodies: Vec<_> = (0..80)
+        .map(|i| {
+            let points: Vec<Vector> = (0..16).map(|_| rng.direction().as_vec3() * 0.05).collect();
+            let body = Body::hull(&points, border).expect("a solid").as_own(true);
+            let cell = Vector::new((i % 5) as f32, (i / 25) as f32, (i / 5 % 5) as f32);
+            let at = (cell - Vector::new(2.0, -0.8, 2.0)) * 0.14;
+            let turn = rng.direction().as_vec3() * 2.0;
+            let builder = RigidBodyBuilder::dynamic().translation(at).rotation(turn);
+            world.insert(builder, ColliderBuilder::new(body.shape)).0
+        })
+        .collect();
+    let sleeping = |world: &PhysicsWorld| {
+        let asleep = bodies
+            .iter()
+            .filter(|&&body| world.bodies[body].is_sleeping());
+        asleep.count() * 20 >= bodies.len() * 19
+    };
+    (0..600)
+        .find(|_| {
+            world.step();
+            sleeping(&world)
+        })
+        .unwrap_or(600)
 }
 
 /// Another dispatcher than parry's may have its own answer about such shapes.

@@ -4,6 +4,7 @@ use glam::DVec3;
 use parry3d::shape::{PackedFeatureId, PolygonalFeature};
 
 use super::shape::{CustomShape, extreme, rounded};
+use crate::mix::extended;
 use crate::support::{Support, VertexId};
 use crate::tuning::SMALL_TURN;
 
@@ -11,12 +12,20 @@ use crate::tuning::SMALL_TURN;
 pub(super) const MAX_CORNERS: usize = 4;
 
 /// The face or the edge that is extreme along a direction.
+#[derive(Clone, Copy)]
 pub(super) struct ExtremeFeature {
     corners: [(DVec3, VertexId); MAX_CORNERS],
     count: usize,
 }
 
 impl ExtremeFeature {
+    pub fn triangle([a, b, c]: [(DVec3, VertexId); 3]) -> Self {
+        Self {
+            corners: [a, b, c, c],
+            count: 3,
+        }
+    }
+
     pub fn corners(&self) -> &[(DVec3, VertexId)] {
         &self.corners[..self.count]
     }
@@ -28,8 +37,14 @@ impl ExtremeFeature {
         (0..corners.len()).map(move |i| [corners[i].0, next(i)])
     }
 
+    /// The same seen from the other side.
+    pub fn reversed(mut self) -> Self {
+        self.corners[..self.count].reverse();
+        self
+    }
+
     /// The area vector, which is perpendicular to a face.
-    fn area(&self) -> DVec3 {
+    pub fn area(&self) -> DVec3 {
         let origin = self.corners[0].0;
         let triangles = self.edges().map(|[a, b]| (a - origin).cross(b - origin));
         triangles.sum()
@@ -50,25 +65,6 @@ impl CustomShape<'_> {
                 corners: std::array::from_fn(corner),
                 count,
             })
-    }
-
-    /// The face that is extreme along `dir`, and its outward unit normal.
-    pub(super) fn face(&self, dir: DVec3) -> Option<(ExtremeFeature, DVec3)> {
-        let mut face = self.feature(dir, 3)?;
-        let mut normal = face.area().try_normalize()?;
-        if normal.dot(dir) < 0.0 {
-            face.corners[..face.count].reverse();
-            normal = -normal;
-        }
-        // A polygon in place of a round surface has points of the shape above it.
-        let highest = normal.dot(extreme(self.support, normal));
-        let is_on_top = |&(corner, _): &(DVec3, VertexId)| {
-            (highest - normal.dot(corner)).abs() <= self.rounding()
-        };
-        face.corners()
-            .iter()
-            .all(is_on_top)
-            .then_some((face, normal))
     }
 
     /// Of the edges of the face that is extreme along `dir`, the one that is extreme.
@@ -95,6 +91,15 @@ impl CustomShape<'_> {
 }
 
 /// As many bits of an id as fit into a manifold's memory.
+const ID_BITS: u32 = f32::MANTISSA_DIGITS;
+
 fn vertex_id(id: PackedFeatureId) -> VertexId {
-    VertexId::from(id.0 % (1 << f32::MANTISSA_DIGITS))
+    VertexId::from(id.0 % (1 << ID_BITS))
+}
+
+/// The id of a corner that the shape has not told.
+pub(super) fn id_by_place(corner: DVec3) -> VertexId {
+    let words = corner.to_array().map(f64::to_bits);
+    let hash = words.into_iter().fold(0, extended);
+    VertexId::from((hash >> (u64::BITS - ID_BITS)) as u32)
 }

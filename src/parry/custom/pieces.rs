@@ -47,6 +47,11 @@ impl SurfacePieces for CustomShape<'_> {
         insets.fold(f64::INFINITY, f64::min)
     }
 
+    fn ends_at_edges(&self, dir: DVec3) -> bool {
+        self.face(dir)
+            .is_some_and(|(face, normal)| self.are_edges(&face, normal))
+    }
+
     fn point_on_side(&self, dir: DVec3, near: DVec3, _: &mut Cost) -> Option<DVec3> {
         if let Some(flat) = self.flat(dir, VertexId::default()) {
             return point_on_flat(self, &flat, dir, near);
