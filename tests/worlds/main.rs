@@ -10,6 +10,7 @@ mod large_grounds;
 mod left;
 mod logs;
 mod mid_run;
+mod one_way;
 mod prepared_shapes;
 mod resting;
 mod rolling;

@@ -56,7 +56,8 @@ impl HalfSpaceUpdate<'_, '_> {
         let near = plane.deepest(hull, start, cost);
         if near.signed_distance > self.max_distance {
             let vertices = [near.features[0].vertex(hull), VertexId::default()];
-            self.manifold.set_axis(near.normal, vertices);
+            self.manifold
+                .set_stored_axis(-self.pair.other.normal, vertices);
             return Stage::Axis;
         }
         if self.is_held(near.signed_distance, cache) || self.update_contacts(&near, scratch, cache)

@@ -4,9 +4,10 @@
 //! rapier nothing; a workspace would make it rebuild its solver graph in every step. So the memory is in
 //! unused fields of the manifold:
 //!
-//! - without points, `local_n1` is the separating axis (as in parry) in an [`AxisFrame`], or zero if none was
-//!   needed: the bounding spheres are apart since the last contact. `local_n2`, which is unused then, contains
-//!   two vertices as whole numbers, which were extreme when the axis was found;
+//! - without points, `local_n1` is the separating axis in an [`AxisFrame`], or zero if none was needed: the
+//!   bounding spheres are apart since the last contact. As in parry, it leads from the caller's first shape to
+//!   the second: one-way platforms learn from it from where a body comes. `local_n2`, which is unused then,
+//!   contains two vertices as whole numbers, which were extreme when the axis was found;
 //! - with points, `local_n1` is the contact normal, and the feature ids of the first point are the features
 //!   in contact.
 //!
@@ -136,6 +137,7 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
             let n2 = *manifold.local_n2;
             // Casts saturate, and NaN becomes 0: any vector is some pair of vertices.
             let vertices = [n2.x, n2.y].map(|x| VertexId::from(x as u32));
+            let [axis, _] = order.to_kernel([axis, -axis]);
             return PairMemory::Axis(self.frame.to_kernel(axis), vertices);
         }
         let points = manifold.points();
@@ -192,6 +194,14 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
     /// Stores an axis and extreme vertices in a manifold without points.
     #[inline(always)]
     pub fn set_axis(&mut self, axis: DVec3, vertices: [VertexId; 2]) {
+        let axis = self.frame.to_stored(axis);
+        self.set_stored_axis(axis, vertices);
+    }
+
+    /// The same for an axis that is already in the frame in which it is stored, from the kernels' first shape to their
+    /// second.
+    #[inline]
+    pub fn set_stored_axis(&mut self, axis: DVec3, vertices: [VertexId; 2]) {
         debug_assert!(is_unit(axis), "no unit vector: {axis}");
         debug_assert!(
             vertices
@@ -199,7 +209,7 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
                 .all(|&vertex| vertex.index() < 1 << f32::MANTISSA_DIGITS)
         );
         self.manifold.clear();
-        *self.manifold.local_n1 = self.frame.to_stored(axis).as_vec3();
+        [*self.manifold.local_n1, _] = self.order.to_caller([axis, -axis].map(|n| n.as_vec3()));
         // Whole numbers up to 2^24 are exact in f32.
         let [x, y] = map_pair(vertices, |vertex| u32::from(vertex) as f32);
         *self.manifold.local_n2 = Vec3::new(x, y, 0.0);

@@ -1,0 +1,87 @@
+//! One-way platforms: what comes from above lands on them, and what comes from below passes.
+//!
+//! rapier's `update_as_oneway_platform` learns from the normal of an empty manifold from where a body comes. A body that
+//! falls fast overlaps the platform in its first step in contact, and falls through if it seemed to come from below.
+
+use rapier3d::prelude::*;
+use testkit::world::ours;
+
+struct OneWay(ColliderHandle);
+
+impl PhysicsHooks for OneWay {
+    fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+        let up = if context.collider1 == self.0 {
+            Vector::Y
+        } else {
+            -Vector::Y
+        };
+        context.update_as_oneway_platform(up, 0.2);
+    }
+}
+
+/// A box of these half extents, as a hull.
+fn hull(half: Vector) -> SharedShape {
+    let sign = |i: u32, bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
+    let corner = |i| half * Vector::new(sign(i, 0), sign(i, 1), sign(i, 2));
+    SharedShape::convex_hull(&(0..8).map(corner).collect::<Vec<_>>()).expect("a box")
+}
+
+/// Where a body is that starts at a height with a velocity.
+fn height_after(
+    shapes: [&SharedShape; 2],
+    platform_first: bool,
+    [height, velocity]: [Real; 2],
+    steps: usize,
+) -> Real {
+    let mut world = PhysicsWorld {
+        narrow_phase: ours(),
+        ..PhysicsWorld::default()
+    };
+    let [platform, body] = shapes.map(|shape| ColliderBuilder::new(shape.clone()));
+    let platform = platform.active_hooks(ActiveHooks::MODIFY_SOLVER_CONTACTS);
+    let start = RigidBodyBuilder::dynamic()
+        .translation(Vector::new(0.1, height, 0.05))
+        .linvel(Vector::Y * velocity)
+        .lock_rotations();
+    let (hooks, handle) = if platform_first {
+        let hooks = OneWay(world.insert_collider(platform, None));
+        (hooks, world.insert(start, body).0)
+    } else {
+        let handle = world.insert(start, body).0;
+        (OneWay(world.insert_collider(platform, None)), handle)
+    };
+    for _ in 0..steps {
+        world.step_with_events(&hooks, &());
+    }
+    world.bodies[handle].translation().y
+}
+
+#[test]
+fn bodies_land_on_one_way_platforms_and_jump_through_them() {
+    let half = Vector::new(3.0, 0.2, 3.0);
+    let platforms = [
+        hull(half),
+        SharedShape::cuboid(half.x, half.y, half.z),
+        SharedShape::cylinder(half.y, half.x),
+    ];
+    let bodies = [
+        hull(Vector::splat(0.25)),
+        SharedShape::cuboid(0.25, 0.25, 0.25),
+        SharedShape::cylinder(0.25, 0.25),
+        SharedShape::ball(0.25),
+    ];
+    for platform in &platforms {
+        for body in &bodies {
+            for first in [true, false] {
+                let what = || format!("{:?} on {:?}", body.shape_type(), platform.shape_type());
+                // It falls from above, or jumps from below and falls then.
+                for start in [[1.5, 0.0], [2.0, -3.0], [-0.8, 9.0]] {
+                    let end = height_after([platform, body], first, start, 240);
+                    assert!((end - 0.45).abs() < 0.02, "{}, {start:?}: {end}", what());
+                }
+                let passed = height_after([platform, body], first, [-0.8, 9.0], 20);
+                assert!(passed > 0.5, "{} stops at {passed}", what());
+            }
+        }
+    }
+}
