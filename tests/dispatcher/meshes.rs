@@ -4,6 +4,7 @@
 //! two would have alone and for the first time, wherever the hull comes from, in either order, and
 //! with normals corrected for internal edges or not.
 
+use glam::DVec3;
 use isa_gjk::{HullShape, IsaGjkDispatcher};
 use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::query::ContactManifold;
@@ -289,4 +290,56 @@ fn triangles_of_two_sides_push_plates_back() {
         pushed += usize::from(least[0] < 0.0);
     }
     assert!(pushed > 500, "only {pushed} are pushed out");
+}
+
+/// The parts of a compound have the contacts that they would have alone, also at the border of a mesh, where the
+/// correction of normals may leave a part without any.
+#[test]
+fn parts_of_compounds_touch_meshes_as_they_would_alone() {
+    let mut rng = Rng::new(19);
+    let us = IsaGjkDispatcher::default();
+    let mesh = mesh(TriMeshFlags::FIX_INTERNAL_EDGES);
+    let parts = [0.2, -0.5].map(|x| {
+        let corners: Vec<Vector> = (0..16).map(|_| rng.direction().as_vec3() * 0.4).collect();
+        let hull = SharedShape::convex_hull(&corners).expect("points on a ball");
+        (Pose::translation(x, 0.1, 0.3 * x), hull)
+    });
+    let compound = SharedShape::compound(parts.to_vec());
+    let deepest_of = |pose: &Pose, shapes: [&dyn Shape; 2], part: u32, swapped: bool| {
+        let mut manifolds = Manifolds::new();
+        us.update_manifolds(pose, shapes, PREDICTION, &mut manifolds, &mut None)
+            .expect("supported");
+        let id = |m: &&Manifold| if swapped { m.subshape1 } else { m.subshape2 };
+        let of_part = manifolds.iter().filter(|m| id(m) == part);
+        of_part.filter_map(deepest).reduce(Real::min)
+    };
+    let mut compared = 0;
+    for round in 0..2_000 {
+        let side = (rng.direction() * DVec3::new(4.3, 0.2, 4.3)).as_vec3();
+        let pose = Pose::from_parts(side, rng.rotation().as_quat());
+        let swapped = round % 2 == 0;
+        for (i, (at, part)) in parts.iter().enumerate() {
+            let (whole, alone) = if swapped {
+                let alone = (pose * at).inverse();
+                let whole = [&*compound as &dyn Shape, &mesh];
+                (
+                    deepest_of(&pose.inverse(), whole, i as u32, true),
+                    deepest_of(&alone, [&**part, &mesh], 0, true),
+                )
+            } else {
+                let whole = [&mesh as &dyn Shape, &*compound];
+                (
+                    deepest_of(&pose, whole, i as u32, false),
+                    deepest_of(&(pose * at), [&mesh, &**part], 0, false),
+                )
+            };
+            let off = (whole.unwrap_or(PREDICTION) - alone.unwrap_or(PREDICTION)).abs();
+            assert!(
+                off < TOLERANCE,
+                "{round}, part {i}: {whole:?}, alone {alone:?}"
+            );
+            compared += usize::from(alone.is_some_and(|alone| alone < 0.0));
+        }
+    }
+    assert!(compared > 400, "only {compared} overlap");
 }

@@ -80,7 +80,12 @@ fn box_in(compound: &Compound, part: u32, pose: &Pose) -> Aabb {
 
 /// A part of a compound. If no part of an overlapping pair has a contact along a corrected normal, normals are left as
 /// they are.
-fn part<'a>(compound: &'a Compound, seams: &'a Seams<'_>, id: u32, corrects: bool) -> SubShape<'a> {
+pub(super) fn part<'a>(
+    compound: &'a Compound,
+    seams: &'a Seams<'_>,
+    id: u32,
+    corrects: bool,
+) -> SubShape<'a> {
     let (pos, shape) = compound.shapes().at_ref(id);
     let constraints = if corrects {
         seams.of_part(id, pos)

@@ -1,5 +1,5 @@
-//! Composite shapes: our routines take apart compounds, and meshes that meet a hull; parry's routines do the
-//! rest. Both call *our* dispatcher for the parts.
+//! Composite shapes: our routines take apart compounds, and meshes that meet a hull or a compound; parry's routines
+//! do the rest. Both call *our* dispatcher for the parts.
 //!
 //! parry's own dispatcher passes itself to those routines, so a dispatcher chained in front of it would never
 //! see the hulls inside compounds, meshes, height fields and voxels.
@@ -134,7 +134,7 @@ pub(crate) fn reset_to_single<M: Default + Clone, C: Default + Copy>(
 }
 
 /// Takes apart a compound that meets another one or a convex shape, and a shape made of triangles that meets a
-/// hull, a cylinder or a cone. `false` for other pairs.
+/// compound, a hull, a cylinder or a cone. `false` for other pairs.
 ///
 /// We answer compounds whether or not they have a hull: to find out, each update would have to visit every
 /// part, however few of them are near.
@@ -166,10 +166,10 @@ where
             return true;
         }
         if let Some(triangles) = Triangles::of(first)
-            && is_hull_or_curved(second)
+            && (second.as_compound().is_some() || is_hull_or_curved(second))
         {
             let sub_manifolds = begin(manifolds, workspace);
-            mesh::triangles_and_hull(sub_manifolds, pos12, triangles, second, order);
+            mesh::triangles(sub_manifolds, pos12, triangles, second, order);
             return true;
         }
     }

@@ -76,6 +76,7 @@ where
         use TypedWorkspaceData::{
             CompositeShapeCompositeShapeContactManifoldsWorkspace as OfTwo,
             CompositeShapeShapeContactManifoldsWorkspace as OfOne,
+            HeightfieldCompositeShapeContactManifoldsWorkspace as OfFieldAndParts,
             HeightfieldShapeContactManifoldsWorkspace as OfField,
             TriMeshShapeContactManifoldsWorkspace as OfMesh,
             VoxelsShapeContactManifoldsWorkspace as Ours,
@@ -86,7 +87,7 @@ where
             parrys_or_none => {
                 let parrys = matches!(
                     parrys_or_none,
-                    Some(OfOne(_) | OfTwo(_) | OfField(_) | OfMesh(_))
+                    Some(OfOne(_) | OfTwo(_) | OfField(_) | OfFieldAndParts(_) | OfMesh(_))
                 );
                 if !parrys {
                     manifolds.clear();
@@ -196,32 +197,42 @@ where
         key(manifold.subshape1, manifold.subshape2)
     }
 
-    /// Whether any parts that were updated have contacts.
-    fn have_contacts(&self) -> bool {
-        let mut done = self.manifolds.iter().take(self.done);
+    /// Whether any parts that were updated after the `first` ones have contacts.
+    fn have_contacts(&self, first: usize) -> bool {
+        let mut done = self.manifolds[first..self.done].iter();
         done.any(|manifold| !manifold.points.is_empty())
     }
 
-    /// Forgets that any parts were updated.
-    fn start_over(&mut self) {
-        self.done = 0;
+    /// Forgets that any parts after the `first` ones were updated.
+    fn start_over(&mut self, first: usize) {
+        self.done = first;
         self.searched = 0;
         self.places = None;
     }
 
-    /// Updates all parts, with corrected normals. If these leave some part that overlaps the other shape without a
-    /// contact, and no part has one, updates them once more, with normals as they are.
+    /// Updates all parts of a pair.
     pub fn update_all(mut self, update: impl Fn(&mut Self, bool), leave_some: impl Fn() -> bool) {
-        update(&mut self, true);
-        if leave_some() && !self.have_contacts() {
-            self.start_over();
-            update(&mut self, false);
-        }
+        self.update_group(update, leave_some);
         self.finish();
     }
 
+    /// Updates some parts, with corrected normals. If these leave some part that overlaps the other shape without a
+    /// contact, and no part has one, updates them once more, with normals as they are.
+    pub fn update_group(
+        &mut self,
+        update: impl Fn(&mut Self, bool),
+        leave_some: impl Fn() -> bool,
+    ) {
+        let first = self.done;
+        update(self, true);
+        if leave_some() && !self.have_contacts(first) {
+            self.start_over(first);
+            update(self, false);
+        }
+    }
+
     /// Drops the manifolds of parts that no longer meet.
-    fn finish(self) {
+    pub fn finish(self) {
         debug_assert!(self.done <= self.manifolds.len());
         self.manifolds.truncate(self.done);
     }
