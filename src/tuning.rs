@@ -196,3 +196,14 @@ pub(crate) const WIDE_PLANE: f64 = 4.0;
 /// A ball that stands for a part of a body in a cast is larger than the part by this share of its radius and of its
 /// place: the motion of its centre is rounded a few times to f32.
 pub(crate) const LOOSE_BALL: f32 = 1e-5;
+
+/// A box in which cells are looked for is larger than it would be by this share of its coordinates, a few roundings of
+/// f32.
+pub(crate) const LOOSE_BOX: f32 = 1e-6;
+/// A cast looks for cells along stretches of so many cells, and of half of the moving shape: on longer ones, more cells
+/// beside the way are looked at, on shorter ones, the same cells more often.
+pub(crate) const CELLS_AT_ONCE: f32 = 4.0;
+/// There are no more stretches than these, however long the way is, and no shorter boxes than this share of a shape.
+pub(crate) const MOST_STRETCHES: f32 = 10_000.0;
+/// A cast of turning shapes looks at the cells in a box one by one if it is no longer than so many cells.
+pub(crate) const CELLS_IN_BOX: f32 = 2.0;

@@ -34,9 +34,8 @@ use crate::stats::{SharedStats, Stats};
 ///
 /// A hull is a `ConvexPolyhedron`, a `RoundConvexPolyhedron` or a [`HullShape`](crate::HullShape); cuboids, triangles,
 /// cylinders and cones may be rounded. A shape of your own (`ShapeType::Custom`) takes part if its `as_support_map` or
-/// `as_polygonal_feature_map` returns something; only the latter gives more than one contact. Compounds, meshes, height fields and voxels are answered part by part, where
-/// parry has a routine that does so: it has none for `distance` and `closest_points` of height fields and voxels, for
-/// `contact` with voxels, and for `cast_shapes_nonlinear` and (but for balls) `intersection_test` with height fields. All
+/// `as_polygonal_feature_map` returns something; only the latter gives more than one contact. Compounds, meshes, height fields and voxels are answered part by part,
+/// also where parry has no routine that does so. All
 /// other pairs go to the fallback `F`: parry's dispatcher, or another one given to [`with_fallback`](Self::with_fallback). Only a pair
 /// that the fallback does not know either is `Unsupported`.
 ///

@@ -432,7 +432,7 @@ fn tetrahedron(height: Real) -> Hull {
 
 /// Parry's routines for cells panic or overflow when they meet a shape without end.
 #[test]
-fn half_spaces_and_cells_are_left_unanswered() {
+fn half_spaces_and_cells_do_not_panic() {
     let samples = shape_samples();
     let shape = |name| {
         let sample = samples.iter().find(|sample| sample.name == name);
@@ -445,7 +445,7 @@ fn half_spaces_and_cells_are_left_unanswered() {
             for [a, b] in [[cells, half_space], [half_space, cells]] {
                 let way = -pose.translation;
                 let cast = dispatcher.cast_shapes(&pose, way, a, b, ShapeCastOptions::default());
-                assert!(cast.is_err(), "{cast:?}");
+                assert!(cast.is_ok(), "{cast:?}");
                 let mut manifolds: Vec<Manifold> = Vec::new();
                 let _ = dispatcher.update_manifolds(&pose, [a, b], 0.1, &mut manifolds, &mut None);
             }

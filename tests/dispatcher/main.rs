@@ -8,6 +8,7 @@ mod bounds;
 mod boxes;
 mod capsules;
 mod casts_in_contact;
+mod cells;
 mod changed_shapes;
 mod coherence;
 mod contacts;

@@ -80,9 +80,14 @@ fn assert_same(ours: &impl Debug, theirs: &impl Debug, what: impl Fn() -> String
     assert_eq!(format!("{ours:?}"), format!("{theirs:?}"), "{}", what());
 }
 
-/// The same parts meet, as deeply.
-fn assert_near(ours: &[Manifold], theirs: &[Manifold], what: impl Fn() -> String) {
-    let [ours, theirs] = [ours, theirs].map(|manifolds| {
+/// The same parts meet, as deeply. `we_predict` if parry finds no contact of these shapes before they overlap.
+fn assert_near(
+    ours: &[Manifold],
+    theirs: &[Manifold],
+    we_predict: bool,
+    what: impl Fn() -> String,
+) {
+    let [mut ours, theirs] = [ours, theirs].map(|manifolds| {
         let deepest =
             |m: &Manifold| Some((m.subshape1, m.subshape2, m.find_deepest_contact()?.dist));
         // At the very edge of the prediction either answer is right.
@@ -91,6 +96,10 @@ fn assert_near(ours: &[Manifold], theirs: &[Manifold], what: impl Fn() -> String
         near.sort_by_key(|&(part_1, part_2, _)| (part_1, part_2));
         near
     });
+    if we_predict {
+        let is_theirs = |a: u32, b: u32| theirs.iter().any(|part| (part.0, part.1) == (a, b));
+        ours.retain(|part| part.2 <= 0.0 || is_theirs(part.0, part.1));
+    }
     let is_near = ours.len() == theirs.len()
         && ours
             .iter()
@@ -120,7 +129,8 @@ fn contacts_are_found_wherever_parry_finds_them() {
                 } else if pair.iter().any(|sample| sample.name == "compound")
                     || pair.iter().all(|sample| sample.name == "capsule")
                 {
-                    assert_near(&ours.manifolds, &theirs.manifolds, what);
+                    let we_predict = pair.iter().any(|sample| sample.name == "voxels");
+                    assert_near(&ours.manifolds, &theirs.manifolds, we_predict, what);
                 } else {
                     assert_same(&ours.manifolds, &theirs.manifolds, what);
                 }
@@ -147,13 +157,14 @@ fn scene_queries_are_supported_wherever_parry_supports_them() {
     for pair in pairs(&shape_samples()) {
         let (g1, g2) = (&*pair[0].shape, &*pair[1].shape);
         for pose in poses().iter().step_by(11) {
-            let agree = |ours: bool, theirs: bool, query: &str| {
+            let keeps = |ours: bool, theirs: bool, query: &str| {
                 let [first, second] = pair.map(|sample| sample.name);
-                assert_eq!(ours, theirs, "{query}, {first} / {second} at {pose:?}");
+                let is_lost = theirs && !ours;
+                assert!(!is_lost, "{query}, {first} / {second} at {pose:?}");
             };
             macro_rules! compare {
                 ($query:ident $arguments:tt) => {
-                    agree(
+                    keeps(
                         ours.$query $arguments.is_ok(),
                         theirs.$query $arguments.is_ok(),
                         stringify!($query),

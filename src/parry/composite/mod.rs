@@ -9,12 +9,12 @@ use parry3d::query::details::{
     ContactManifoldsWorkspace, contact_manifolds_composite_shape_composite_shape,
     contact_manifolds_composite_shape_shape, contact_manifolds_heightfield_composite_shape,
     contact_manifolds_heightfield_shape_shapes, contact_manifolds_trimesh_shape_shapes,
-    contact_manifolds_voxels_ball_shapes, contact_manifolds_voxels_composite_shape_shapes,
-    contact_manifolds_voxels_shape_shapes, contact_manifolds_voxels_voxels_shapes,
 };
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher};
 use parry3d::shape::{Shape, ShapeType};
 
+mod cell_queries;
+mod cells;
 mod compound;
 mod coplanar;
 mod mesh;
@@ -23,6 +23,7 @@ pub(crate) mod scene;
 pub(crate) mod seams;
 mod spread;
 mod sub_manifolds;
+mod voxels;
 
 use crate::parry::curved::is_hull_or_curved;
 use crate::parry::order::PairOrder;
@@ -85,10 +86,8 @@ where
         [HeightField, _] | [_, HeightField] => {
             height_field(dispatcher, pos12, shapes, prediction, manifolds, workspace)
         }
-        [Voxels, _] | [_, Voxels] if shapes.into_iter().all(may_meet_voxels) => {
-            let is_composite = composites.iter().any(Option::is_some);
-            let others = (shapes, is_composite);
-            voxels(dispatcher, pos12, others, prediction, manifolds, workspace);
+        [Voxels, _] | [_, Voxels] if shapes.into_iter().all(voxels::may_meet) => {
+            voxels::update(dispatcher, pos12, shapes, prediction, manifolds, workspace);
         }
         _ => match composites {
             [Some(c1), _] => contact_manifolds_composite_shape_shape(
@@ -174,43 +173,6 @@ where
         }
     }
     false
-}
-
-/// Whether parry's routines for voxels know a shape. Any other, such as a half-space, ends in a panic there.
-fn may_meet_voxels(shape: &dyn Shape) -> bool {
-    let is_convex = shape.as_support_map().is_some();
-    is_convex || shape.as_composite_shape().is_some() || shape.as_voxels().is_some()
-}
-
-/// Voxels against anything. One of the shapes has voxels, and the other may be composite (`is_composite`).
-fn voxels<M, C>(
-    dispatcher: &dyn PersistentQueryDispatcher<M, C>,
-    pos12: &Pose,
-    ([s1, s2], is_composite): ([&dyn Shape; 2], bool),
-    prediction: Real,
-    manifolds: &mut Vec<ContactManifold<M, C>>,
-    workspace: &mut Option<ContactManifoldsWorkspace>,
-) where
-    M: Default + Clone + Send + Sync,
-    C: Default + Copy + Send + Sync,
-{
-    use ShapeType::{Ball, Voxels};
-    match [s1.shape_type(), s2.shape_type()] {
-        [Voxels, Voxels] => contact_manifolds_voxels_voxels_shapes(
-            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
-        ),
-        [Ball, _] | [_, Ball] => {
-            contact_manifolds_voxels_ball_shapes(pos12, s1, s2, prediction, manifolds);
-            // parry does not set it.
-            *workspace = Some(empty_workspace());
-        }
-        _ if is_composite => contact_manifolds_voxels_composite_shape_shapes(
-            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
-        ),
-        _ => contact_manifolds_voxels_shape_shapes(
-            dispatcher, pos12, s1, s2, prediction, manifolds, workspace,
-        ),
-    }
 }
 
 /// A height field against anything. One of the shapes is a height field.

@@ -1,18 +1,16 @@
 //! Scene queries against shapes with parts: parry's routines choose the parts, and call *our* dispatcher for
-//! them. The cases are in the order of parry's own dispatcher; if it has no such case, the pair is
-//! [`Unsupported`]. Negative distances become zero, since the routines assert that they are not negative.
+//! them. Cells of height fields and voxels, and parts of shapes that turn, are chosen by us. If no routine
+//! knows the pair, it is [`Unsupported`]. Negative distances become zero, since parry's routines assert that
+//! they are not negative.
 
 use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::details::{
-    NonlinearShapeCastMode, cast_shapes_composite_shape_shape, cast_shapes_heightfield_shape,
-    cast_shapes_nonlinear_shape_voxels, cast_shapes_nonlinear_support_map_support_map,
-    cast_shapes_nonlinear_voxels_shape, cast_shapes_shape_composite_shape,
-    cast_shapes_shape_heightfield, cast_shapes_shape_voxels, cast_shapes_voxels_shape,
+    NonlinearShapeCastMode, cast_shapes_composite_shape_shape,
+    cast_shapes_nonlinear_support_map_support_map, cast_shapes_shape_composite_shape,
     closest_points_composite_shape_shape, closest_points_shape_composite_shape,
-    contact_composite_shape_shape, contact_heightfield_shape, contact_shape_composite_shape,
-    contact_shape_heightfield, distance_composite_shape_shape, distance_shape_composite_shape,
-    intersection_test_composite_shape_shape, intersection_test_shape_composite_shape,
-    intersection_test_shape_voxels, intersection_test_voxels_shape,
+    contact_composite_shape_shape, contact_shape_composite_shape, distance_composite_shape_shape,
+    distance_shape_composite_shape, intersection_test_composite_shape_shape,
+    intersection_test_shape_composite_shape,
 };
 use parry3d::query::{
     ClosestPoints, Contact, NonlinearRigidMotion, PersistentQueryDispatcher, QueryDispatcher,
@@ -20,6 +18,8 @@ use parry3d::query::{
 };
 use parry3d::shape::{Shape, ShapeType};
 
+use super::cell_queries::CellsPair;
+use super::cells::Cells;
 use super::nonlinear::{PartsCast, of_other};
 
 pub(crate) fn intersection_test(
@@ -28,19 +28,22 @@ pub(crate) fn intersection_test(
     g1: &dyn Shape,
     g2: &dyn Shape,
 ) -> Result<ShapeIntersection, Unsupported> {
+    if let Some(pair) = CellsPair::of(us, pos12, [g1, g2]) {
+        return Ok(pair.intersection_test());
+    }
+    if let Some(pair) = CellsPair::of(us, &pos12.inverse(), [g2, g1]) {
+        let hit = pair.intersection_test();
+        return Ok(hit.with_subshapes(hit.subshape2, hit.subshape1));
+    }
     // parry projects the centre of a ball onto the whole shape.
     if [g1, g2].iter().any(|g| g.shape_type() == ShapeType::Ball) {
         return Err(Unsupported);
     }
     if let Some(c1) = g1.as_composite_shape() {
         Ok(intersection_test_composite_shape_shape(us, pos12, c1, g2))
-    } else if let Some(c2) = g2.as_composite_shape() {
-        Ok(intersection_test_shape_composite_shape(us, pos12, g1, c2))
-    } else if let Some(v1) = g1.as_voxels() {
-        Ok(intersection_test_voxels_shape(us, pos12, v1, g2))
     } else {
-        let v2 = g2.as_voxels().ok_or(Unsupported)?;
-        Ok(intersection_test_shape_voxels(us, pos12, g1, v2))
+        let c2 = g2.as_composite_shape().ok_or(Unsupported)?;
+        Ok(intersection_test_shape_composite_shape(us, pos12, g1, c2))
     }
 }
 
@@ -50,7 +53,12 @@ pub(crate) fn distance(
     g1: &dyn Shape,
     g2: &dyn Shape,
 ) -> Result<ShapeDistance, Unsupported> {
-    if let Some(c1) = g1.as_composite_shape() {
+    if let Some(pair) = CellsPair::of(us, pos12, [g1, g2]) {
+        Ok(pair.distance())
+    } else if let Some(pair) = CellsPair::of(us, &pos12.inverse(), [g2, g1]) {
+        let found = pair.distance();
+        Ok(found.with_subshapes(found.subshape2, found.subshape1))
+    } else if let Some(c1) = g1.as_composite_shape() {
         Ok(distance_composite_shape_shape(us, pos12, c1, g2))
     } else {
         let c2 = g2.as_composite_shape().ok_or(Unsupported)?;
@@ -66,10 +74,10 @@ pub(crate) fn contact(
     prediction: Real,
 ) -> Result<Option<Contact>, Unsupported> {
     let prediction = prediction.max(0.0);
-    Ok(if let Some(h1) = g1.as_heightfield() {
-        contact_heightfield_shape(us, pos12, h1, g2, prediction)
-    } else if let Some(h2) = g2.as_heightfield() {
-        contact_shape_heightfield(us, pos12, g1, h2, prediction)
+    Ok(if let Some(pair) = CellsPair::of(us, pos12, [g1, g2]) {
+        pair.contact(prediction)
+    } else if let Some(pair) = CellsPair::of(us, &pos12.inverse(), [g2, g1]) {
+        pair.contact(prediction).map(Contact::flipped)
     } else if let Some(c1) = g1.as_composite_shape() {
         contact_composite_shape_shape(us, pos12, c1, g2, prediction)
     } else {
@@ -87,22 +95,16 @@ pub(crate) fn closest_points(
 ) -> Result<ClosestPoints, Unsupported> {
     // parry looks at parts whose boxes are nearer than this: at zero, at none.
     let max_dist = max_dist.max(Real::MIN_POSITIVE);
-    Ok(if let Some(c1) = g1.as_composite_shape() {
+    Ok(if let Some(pair) = CellsPair::of(us, pos12, [g1, g2]) {
+        pair.closest_points(max_dist)
+    } else if let Some(pair) = CellsPair::of(us, &pos12.inverse(), [g2, g1]) {
+        pair.closest_points(max_dist).flipped()
+    } else if let Some(c1) = g1.as_composite_shape() {
         closest_points_composite_shape_shape(us, pos12, c1, g2, max_dist)
     } else {
         let c2 = g2.as_composite_shape().ok_or(Unsupported)?;
         closest_points_shape_composite_shape(us, pos12, g1, c2, max_dist)
     })
-}
-
-/// Whether parry's cast would count the cells that a half-space's endless box covers, and overflow.
-pub(crate) fn has_endless_cells(shapes: [&dyn Shape; 2]) -> bool {
-    use ShapeType::{HalfSpace, HeightField, Voxels};
-    let kinds = shapes.map(|shape| shape.shape_type());
-    matches!(
-        kinds,
-        [HalfSpace, HeightField | Voxels] | [HeightField | Voxels, HalfSpace]
-    )
 }
 
 pub(crate) fn cast_shapes(
@@ -114,21 +116,17 @@ pub(crate) fn cast_shapes(
     mut options: ShapeCastOptions,
 ) -> Result<Option<ShapeCastHit>, Unsupported> {
     options.target_distance = options.target_distance.max(0.0);
-    if let Some(h1) = g1.as_heightfield() {
-        return cast_shapes_heightfield_shape(us, pos12, velocity, h1, g2, options);
-    }
-    if let Some(h2) = g2.as_heightfield() {
-        return cast_shapes_shape_heightfield(us, pos12, velocity, g1, h2, options);
-    }
-    Ok(if let Some(c1) = g1.as_composite_shape() {
+    let pos21 = pos12.inverse();
+    Ok(if let Some(pair) = CellsPair::of(us, pos12, [g1, g2]) {
+        pair.cast(velocity, options)
+    } else if let Some(pair) = CellsPair::of(us, &pos21, [g2, g1]) {
+        let hit = pair.cast(-(pos21.rotation * velocity), options);
+        hit.map(of_other)
+    } else if let Some(c1) = g1.as_composite_shape() {
         cast_shapes_composite_shape_shape(us, pos12, velocity, c1, g2, options)
-    } else if let Some(c2) = g2.as_composite_shape() {
-        cast_shapes_shape_composite_shape(us, pos12, velocity, g1, c2, options)
-    } else if let Some(v1) = g1.as_voxels() {
-        cast_shapes_voxels_shape(us, pos12, velocity, v1, g2, options)
     } else {
-        let v2 = g2.as_voxels().ok_or(Unsupported)?;
-        cast_shapes_shape_voxels(us, pos12, velocity, g1, v2, options)
+        let c2 = g2.as_composite_shape().ok_or(Unsupported)?;
+        cast_shapes_shape_composite_shape(us, pos12, velocity, g1, c2, options)
     })
 }
 
@@ -172,11 +170,11 @@ pub(crate) fn cast_shapes_nonlinear(
             parts_cast([m1, m2], g2).run(c1)
         } else if let Some(c2) = g2.as_composite_shape() {
             parts_cast([m2, m1], g1).run(c2).map(of_other)
-        } else if let Some(v1) = g1.as_voxels() {
-            cast_shapes_nonlinear_voxels_shape(us, m1, v1, m2, g2, start, end, stop)
+        } else if let Some(c1) = Cells::of(g1) {
+            parts_cast([m1, m2], g2).run_cells(c1)
         } else {
-            let v2 = g2.as_voxels().ok_or(Unsupported)?;
-            cast_shapes_nonlinear_shape_voxels(us, m1, g1, m2, v2, start, end, stop)
+            let c2 = Cells::of(g2).ok_or(Unsupported)?;
+            parts_cast([m2, m1], g1).run_cells(c2).map(of_other)
         },
     )
 }

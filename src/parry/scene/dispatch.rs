@@ -78,9 +78,6 @@ impl<F: PersistentQueryDispatcher> QueryDispatcher for IsaGjkDispatcher<F> {
         g2: &dyn Shape,
         options: ShapeCastOptions,
     ) -> Result<Option<ShapeCastHit>, Unsupported> {
-        if parts::has_endless_cells([g1, g2]) {
-            return Err(Unsupported);
-        }
         self.unless_left([g1, g2], || {
             cast::cast_shapes(pos12, local_vel12, g1, g2, options)
         })
