@@ -153,6 +153,12 @@ pub(crate) const ROCKING_RISE: f64 = 1e-3;
 /// behind its lowest place, and push it on until it rolls by this angle in each step.
 pub(crate) const ROLLING: f64 = 3e-4;
 
+/// A disc that rolls on its rim by at least this angle from one update to the next, in radians, has a contact ahead. A coin
+/// that wobbles on a table rolls by a tenth in each step, whatever its size.
+pub(crate) const LEAST_LEAD: f64 = 0.01;
+/// But none farther ahead than this: so wide a turn says little about the next one.
+pub(crate) const MOST_LEAD: f64 = 0.5;
+
 /// Manifolds whose normals have at least this cosine lie in one plane: the angle, five degrees, up to which
 /// rapier merges them.
 pub(crate) const ONE_PLANE_COS: f32 = 0.996;

@@ -27,7 +27,7 @@ const SECTORS: [[f64; 2]; 8] = {
 impl Patch {
     /// The direction in the plane of a flat side in which its contacts become deeper. `None` if both sides
     /// are parallel.
-    fn lean(&self, shape: usize, flat: &FlatSide) -> Option<DVec3> {
+    pub(super) fn lean(&self, shape: usize, flat: &FlatSide) -> Option<DVec3> {
         let Piece::Flat(other) = &self.pieces[1 - shape] else {
             return None;
         };
@@ -87,7 +87,7 @@ impl Patch {
 
     /// Whether a whole disc is over a flat side. The tilts of both sides bound how much its radius grows,
     /// seen along the normal.
-    fn is_whole_over(&self, shape: usize, center: DVec3, radius: f64) -> bool {
+    pub(super) fn is_whole_over(&self, shape: usize, center: DVec3, radius: f64) -> bool {
         self.flat(shape).is_some_and(|flat| {
             let lean = flat.side.normal.dot(self.normal()).abs();
             let inset = flat.inset(center).unwrap_or(0.0);

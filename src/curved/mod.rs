@@ -22,6 +22,7 @@ mod cylinder;
 mod discs;
 mod find_places;
 mod flat_sides;
+mod lead;
 mod lines;
 mod on_border;
 mod on_crossing;

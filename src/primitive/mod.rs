@@ -21,7 +21,7 @@ pub use cuboid::CuboidPolytope;
 pub use cylinder::Cylinder;
 pub(crate) use outline::Revolved;
 pub(crate) use point::Point;
-pub(crate) use rolling::turns;
+pub(crate) use rolling::{turn_about, turns};
 pub use segment::Segment;
 pub(crate) use segment::nearest_share;
 pub use triangle::TrianglePolytope;

@@ -31,6 +31,14 @@ pub(super) fn turns_about_y(from: DVec3, to: DVec3) -> bool {
     )
 }
 
+/// The angle by which unit vectors turn about an axis of unit length, by their parts across it. `None` if one of them is
+/// nearly along the axis.
+pub(crate) fn turn_about(axis: DVec3, from: DVec3, to: DVec3) -> Option<f64> {
+    let [from, to] = [from, to].map(|v| v.reject_from_normalized(axis));
+    let least = from.length_squared().min(to.length_squared());
+    (least > SMALL_TURN * SMALL_TURN).then(|| axis.dot(from.cross(to)).atan2(from.dot(to)))
+}
+
 /// Whether two vectors in a plane turn, from their cross product and their squares.
 #[inline]
 fn turns_across(turn: f64, [a, b]: [f64; 2]) -> bool {

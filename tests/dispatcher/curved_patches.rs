@@ -4,6 +4,7 @@ use glam::{DQuat, DVec3};
 use isa_gjk::IsaGjkDispatcher;
 use parry3d::math::{Pose, Vector};
 use parry3d::shape::SharedShape;
+use testkit::curved::{Body, Judge};
 use testkit::generate::Rng;
 use testkit::memory::{Manifold, Memory, cold_manifold};
 use testkit::pose::ExactPose;
@@ -166,5 +167,83 @@ fn contacts_stay_under_a_spin() {
             }
         }
         before = Some(places);
+    }
+}
+
+const WOBBLE: f64 = 0.1;
+
+/// A body that leans by a tenth, whose lowest place has gone round by an angle without sliding.
+fn wobbling(angle: f64, half: f64, radius: f64) -> ExactPose {
+    let lean = DQuat::from_rotation_z(-WOBBLE);
+    ExactPose {
+        rotation: DQuat::from_rotation_y(-angle) * lean * DQuat::from_rotation_y(angle),
+        translation: DVec3::Y * (0.5 + half * WOBBLE.cos() + radius * WOBBLE.sin() - 1e-3),
+    }
+}
+
+/// What wobbles has a contact where it will be deepest after the next step.
+#[test]
+fn a_rolling_disc_has_a_contact_ahead() {
+    let grounds = [
+        Body::cuboid(Vector::new(2.0, 0.5, 2.0), 0.0),
+        Body::cylinder(0.5, 1.5, 0.0),
+    ];
+    let bodies = [
+        (Body::cylinder(0.3, 0.5, 0.0), 0.3),
+        (Body::cylinder(0.02, 0.5, 0.0), 0.02),
+        (Body::cone(0.3, 0.5, 0.0), 0.3),
+        (Body::cylinder(0.3, 0.45, 0.05), 0.35),
+    ];
+    let dispatcher = IsaGjkDispatcher::default();
+    for (ground, (body, half)) in grounds
+        .iter()
+        .flat_map(|g| bodies.iter().map(move |b| (g, b)))
+    {
+        for (is_reversed, step) in [(false, 0.1), (true, 0.1), (false, -0.1), (false, 0.02)] {
+            let what = format!("{} on {}, {is_reversed}, {step}", body.name, ground.name);
+            let mut memory = Memory::default();
+            for frame in 0..6 {
+                let at = |frame: i32| {
+                    let pose = wobbling(step * f64::from(frame), *half, 0.5).rounded();
+                    if is_reversed {
+                        pose.inverse().rounded()
+                    } else {
+                        pose
+                    }
+                };
+                let pair = if is_reversed {
+                    [body, ground]
+                } else {
+                    [ground, body]
+                };
+                let shapes = pair.map(|body| &body.shape);
+                let found = memory.update(&dispatcher, &at(frame).to_f32(), shapes, REACH);
+                let found = found.expect("supported");
+                let faults = Judge::new(pair, at(frame)).manifold(Some(found), REACH.into());
+                assert!(faults.are_within(1e-5), "{what}, {frame}: {faults:?}");
+                let on_body = |point: &parry3d::query::TrackedContact<u32>| {
+                    if is_reversed {
+                        point.local_p1
+                    } else {
+                        point.local_p2
+                    }
+                    .as_dvec3()
+                };
+                let next = manifold(shapes, &at(frame + 1).to_f32());
+                let deepest = next.points.iter().min_by(|a, b| a.dist.total_cmp(&b.dist));
+                let next = on_body(deepest.expect("a contact"));
+                let places: Vec<_> = found.points.iter().map(on_body).collect();
+                let away = places
+                    .iter()
+                    .map(|p| p.distance(next))
+                    .fold(f64::INFINITY, f64::min);
+                // Of a rounded one, it is at the border of the flat side.
+                let near = 2e-3 + 1.1 * WOBBLE * body.border;
+                assert!(frame == 0 || away < near, "{what}, {frame}: {away}");
+                let center = DVec3::NEG_Y * *half;
+                let reach = least_reach(&places, center, DVec3::Y);
+                assert!(frame == 0 || reach > 0.45 * 0.5, "{what}, {frame}: {reach}");
+            }
+        }
     }
 }

@@ -65,3 +65,76 @@ fn contacts_do_not_push_what_rolls() {
         assert!(change < 0.1, "{what}: {speed} m/s after {SPEED}");
     }
 }
+
+/// What became of a body that started on its rim, leaning by an angle, with the lowest place running around.
+#[derive(Debug)]
+struct Wobbled {
+    /// The energy per kilogram, above that at rest.
+    at_first: Real,
+    most: Real,
+    asleep_after: Option<usize>,
+}
+
+fn wobbled(narrow_phase: NarrowPhase, shape: SharedShape, lean: Real) -> Wobbled {
+    const FLOOR: Real = 0.5;
+    let mut world = PhysicsWorld {
+        narrow_phase,
+        ..PhysicsWorld::default()
+    };
+    let floor = ColliderBuilder::cuboid(10.0, FLOOR, 10.0);
+    world.insert_collider(floor.translation(Vector::NEG_Y * FLOOR), None);
+    let half = shape.compute_local_aabb().half_extents();
+    let rotation = Rotation::from_rotation_z(-lean);
+    let down = rotation * Vector::X;
+    let arm = down * half.x - rotation * Vector::Y * half.y;
+    let turning = down * (6.0 * lean / half.x.sqrt());
+    let body = RigidBodyBuilder::dynamic()
+        .pose(Pose::from_parts(Vector::NEG_Y * arm.y, rotation))
+        .angvel(turning)
+        .linvel(-turning.cross(arm));
+    let center = shape.mass_properties(1.0).local_com;
+    let (body, _) = world.insert(body, ColliderBuilder::new(shape));
+    let energy = |world: &PhysicsWorld| {
+        let body = &world.bodies[body];
+        let height = body.center_of_mass().y - (half.y + center.y);
+        body.kinetic_energy() / body.mass() - world.gravity.y * height
+    };
+    let at_first = energy(&world);
+    let mut found = Wobbled {
+        at_first,
+        most: at_first,
+        asleep_after: None,
+    };
+    for step in 1..=600 {
+        world.step();
+        found.most = found.most.max(energy(&world));
+        if world.bodies[body].is_sleeping() {
+            found.asleep_after = Some(step);
+            break;
+        }
+    }
+    found
+}
+
+/// With the only contact at the lowest place of the step's beginning, a body that wobbles gained energy until it fell
+/// over.
+#[test]
+fn what_wobbles_comes_to_rest() {
+    let cases = [
+        ("barrel", SharedShape::cylinder(0.34, 0.3)),
+        ("coin", SharedShape::cylinder(0.05, 0.3)),
+        ("small barrel", SharedShape::cylinder(0.05, 0.05)),
+        ("large barrel", SharedShape::cylinder(1.0, 1.0)),
+        ("round barrel", SharedShape::round_cylinder(0.3, 0.28, 0.02)),
+        ("cone", SharedShape::cone(0.4, 0.3)),
+    ];
+    for (what, shape) in cases {
+        for lean in [0.1, 0.2] {
+            let ours = wobbled(testkit::world::ours(), shape.clone(), lean);
+            let default = wobbled(NarrowPhase::new(), shape.clone(), lean);
+            println!("{what}, {lean}: {ours:?}, default {default:?}");
+            assert!(ours.asleep_after.is_some(), "{what}, {lean}: {ours:?}");
+            assert!(ours.most < 1.02 * ours.at_first, "{what}, {lean}: {ours:?}");
+        }
+    }
+}
