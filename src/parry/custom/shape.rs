@@ -88,8 +88,9 @@ fn inner_point(support: &dyn SupportMap, radius: f64) -> Option<DVec3> {
     };
     let a = extreme(support, DVec3::X);
     let b = farther(a, DVec3::X)?;
-    let c = farther(a, (b - a).any_orthonormal_vector())?;
-    let d = farther(a, (b - a).cross(c - a).try_normalize()?)?;
+    let along = (b - a).try_normalize()?;
+    let c = farther(a, along.any_orthonormal_vector())?;
+    let d = farther(a, along.cross(c - a).try_normalize()?)?;
     Some((a + b + c + d) / 4.0)
 }
 
