@@ -10,6 +10,7 @@ use crate::at::At;
 use crate::face_planes::FacePlanes;
 use crate::oriented_box::OrientedBox;
 use crate::support::{EdgeId, FaceCorners, FaceId, VertexId};
+use crate::tuning::ROUND_SIDES;
 
 /// The faces, and the clusters of some of them.
 #[derive(Clone, Debug)]
@@ -21,6 +22,8 @@ pub(super) struct Faces {
     /// Grown when the first of them is looked up: few hulls ever rest on one.
     pub(super) clusters: OnceLock<Box<FaceClusters>>,
     planes: FacePlanes,
+    /// Whether there may be a side as of a prism that rolls.
+    pub has_many_quads: bool,
 }
 
 /// A face with its supporting plane. Values that are read together lie together, since large hulls do not
@@ -98,8 +101,13 @@ impl Faces {
         let planes = polygons[..count]
             .iter()
             .map(|face| (face.normal, face.offset));
+        let ends = polygons
+            .windows(2)
+            .map(|pair| [pair[0].first(), pair[1].first()]);
+        let quads = ends.filter(|[first, end]| end - first == 4).count();
         Self {
             planes: FacePlanes::new(planes),
+            has_many_quads: quads >= ROUND_SIDES,
             polygons,
             count,
             corners,

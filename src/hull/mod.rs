@@ -9,7 +9,9 @@ mod error;
 mod faces;
 mod graph;
 mod lists;
+mod rolling;
 mod scan;
+mod search;
 mod start_table;
 
 pub(crate) use build::solid::{bends_everywhere, surface_of_points};
@@ -27,8 +29,8 @@ use climb::HillClimb;
 use cluster_growth::grow_clusters;
 use faces::{Faces, PolygonCorners};
 use graph::EdgeGraph;
-use scan::Scan;
-use start_table::StartTable;
+use rolling::rolls_over_faces;
+use search::SupportSearch;
 
 /// A convex polytope, with everything that a query needs precomputed. A [`HullShape`](crate::HullShape) makes a collider
 /// of it. Lengths are in the units of the points it was built from, positions in their frame.
@@ -46,15 +48,6 @@ pub struct Hull {
     id: ShapeId,
     /// If it is a box.
     oriented_box: Option<Box<OrientedBox>>,
-}
-
-/// How extreme vertices are found.
-#[derive(Clone, Debug)]
-enum SupportSearch {
-    /// A small hull: look at every vertex.
-    Scan(Scan),
-    /// A large hull: climb from a start vertex.
-    Climb(StartTable),
 }
 
 impl Hull {
@@ -85,12 +78,8 @@ impl Hull {
     /// instead of the start table. From the first contact where faces lie nearly in one plane on, clusters take
     /// some 20 bytes per vertex more.
     pub fn heap_bytes(&self) -> usize {
-        let search = match &self.search {
-            SupportSearch::Scan(scan) => scan.heap_bytes(),
-            SupportSearch::Climb(start) => start.heap_bytes(),
-        };
         size_of_val(&*self.points)
-            + search
+            + self.search.heap_bytes()
             + self.graph.heap_bytes()
             + self.faces.heap_bytes()
             + self.oriented_box.as_deref().map_or(0, size_of_val)
@@ -164,16 +153,18 @@ impl Support for Hull {
     }
 
     #[inline]
+    fn rolls(&self, from: DVec3, to: DVec3) -> bool {
+        self.faces.has_many_quads && rolls_over_faces(self, from, to)
+    }
+
+    #[inline]
     fn id(&self) -> Option<ShapeId> {
         Some(self.id)
     }
 
     #[inline]
     fn start_vertex(&self, dir: DVec3) -> VertexId {
-        match &self.search {
-            SupportSearch::Scan(_) => VertexId::default(),
-            SupportSearch::Climb(start) => start.lookup(dir),
-        }
+        self.search.start_vertex(dir)
     }
 
     #[inline]
