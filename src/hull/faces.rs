@@ -104,10 +104,12 @@ impl Faces {
         let ends = polygons
             .windows(2)
             .map(|pair| [pair[0].first(), pair[1].first()]);
-        let quads = ends.filter(|[first, end]| end - first == 4).count();
+        let are_triangles = corners.len() == 3 * count;
+        let has_many_quads =
+            !are_triangles && ends.filter(|[first, end]| end - first == 4).count() >= ROUND_SIDES;
         Self {
             planes: FacePlanes::new(planes),
-            has_many_quads: quads >= ROUND_SIDES,
+            has_many_quads,
             polygons,
             count,
             corners,

@@ -154,7 +154,12 @@ impl Support for Hull {
 
     #[inline]
     fn rolls(&self, from: DVec3, to: DVec3) -> bool {
-        self.faces.has_many_quads && rolls_over_faces(self, from, to)
+        self.may_roll() && rolls_over_faces(self, from, to)
+    }
+
+    #[inline]
+    fn may_roll(&self) -> bool {
+        self.faces.has_many_quads
     }
 
     #[inline]

@@ -68,6 +68,11 @@ impl Support for CuboidPolytope {
     }
 
     #[inline]
+    fn may_roll(&self) -> bool {
+        false
+    }
+
+    #[inline]
     fn id(&self) -> Option<ShapeId> {
         Some(ShapeId::described_by(
             ShapeKind::Cuboid,

@@ -63,6 +63,11 @@ impl Support for TrianglePolytope {
     }
 
     #[inline]
+    fn may_roll(&self) -> bool {
+        false
+    }
+
+    #[inline]
     fn id(&self) -> Option<ShapeId> {
         let [a, b, c] = self.vertices;
         let numbers = [a.x, a.y, a.z, b.x, b.y, b.z, c.x, c.y, c.z];

@@ -180,7 +180,7 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
     /// Whether one of the shapes has rolled over the other since the normals were stored.
     #[inline]
     pub fn has_rolled<A: Support, B: Support>(&self, cso: &Cso<'_, A, B>, now: [DVec3; 2]) -> bool {
-        self.normals().is_some_and(|before| cso.rolls(before, now))
+        cso.may_roll() && self.normals().is_some_and(|before| cso.rolls(before, now))
     }
 
     /// Clears the memory of a pair whose bounding spheres are apart. To store an axis would cost a root and a
