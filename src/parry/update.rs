@@ -1,6 +1,6 @@
 //! The update of one manifold, by us or by the fallback.
 
-use parry3d::math::{Pose, Real};
+use parry3d::math::{Pose, Real, Vector};
 use parry3d::query::{ContactManifold, PersistentQueryDispatcher, Unsupported};
 
 use crate::map_pair::map_pair;
@@ -115,12 +115,19 @@ impl<F> Updater<'_, F> {
         }
         let [g1, g2] = map_pair(*operands, |operand| operand.shape);
         let [c1, c2] = *constraints;
-        c1.with(|c1| {
+        let answered = c1.with(|c1| {
             c2.with(|c2| {
                 self.fallback
                     .contact_manifold_convex_convex(pos12, g1, g2, c1, c2, prediction, manifold)
             })
-        })
+        });
+        // Normals that a pose without numbers left would stay while the shapes are far apart.
+        if manifold.points.is_empty()
+            && !(manifold.local_n1.is_finite() && manifold.local_n2.is_finite())
+        {
+            (manifold.local_n1, manifold.local_n2) = (Vector::ZERO, Vector::ZERO);
+        }
+        answered
     }
 }
 
