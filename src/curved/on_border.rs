@@ -87,7 +87,7 @@ impl SideDisc {
         if let Some(flat) = shape.flat_towards(outward, cost)
             && flat.normal.dot(outward) >= KEPT_ANGLE_COS
         {
-            let center = near - flat.normal * (flat.normal.dot(near) - flat.offset);
+            let center = flat.foot(near);
             let radius = shape.inset(&flat, center);
             return (radius > 0.0).then(|| Self {
                 center,

@@ -29,6 +29,14 @@ pub struct FlatSide {
     pub outline: Outline,
 }
 
+impl FlatSide {
+    /// The point of its plane that is nearest to a point.
+    #[inline]
+    pub fn foot(&self, p: DVec3) -> DVec3 {
+        p - self.normal * (self.normal.dot(p) - self.offset)
+    }
+}
+
 /// The outline of a flat side.
 #[derive(Clone, Copy, Debug)]
 pub enum Outline {

@@ -94,7 +94,7 @@ impl<P: Polytope> SurfacePieces for P {
         let Outline::Polygon(face) = flat.outline else {
             return None;
         };
-        let p = near - flat.normal * (flat.normal.dot(near) - flat.offset);
+        let p = flat.foot(near);
         let planes = self.face_planes();
         match planes.and_then(|planes| planes.nearest_beside(face, p)) {
             Some(beside) => meet(&flat, &flat_side(self, beside)?, p, self.radius()),

@@ -124,7 +124,7 @@ pub fn point_on_flat(
     dir: DVec3,
     near: DVec3,
 ) -> Option<DVec3> {
-    let p = near - flat.normal * (flat.normal.dot(near) - flat.offset);
+    let p = flat.foot(near);
     let is_on_it = flat.normal.dot(dir) >= KEPT_ANGLE_COS && shape.inset(flat, p) > 0.0;
     is_on_it.then_some(p)
 }

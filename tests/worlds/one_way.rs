@@ -4,6 +4,7 @@
 //! falls fast overlaps the platform in its first step in contact, and falls through if it seemed to come from below.
 
 use rapier3d::prelude::*;
+use testkit::scenes::hulls;
 use testkit::world::ours;
 
 struct OneWay(ColliderHandle);
@@ -17,13 +18,6 @@ impl PhysicsHooks for OneWay {
         };
         context.update_as_oneway_platform(up, 0.2);
     }
-}
-
-/// A box of these half extents, as a hull.
-fn hull(half: Vector) -> SharedShape {
-    let sign = |i: u32, bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };
-    let corner = |i| half * Vector::new(sign(i, 0), sign(i, 1), sign(i, 2));
-    SharedShape::convex_hull(&(0..8).map(corner).collect::<Vec<_>>()).expect("a box")
 }
 
 /// Where a body is that starts at a height with a velocity.
@@ -60,12 +54,12 @@ fn height_after(
 fn bodies_land_on_one_way_platforms_and_jump_through_them() {
     let half = Vector::new(3.0, 0.2, 3.0);
     let platforms = [
-        hull(half),
+        hulls::cuboid(half).expect("a solid"),
         SharedShape::cuboid(half.x, half.y, half.z),
         SharedShape::cylinder(half.y, half.x),
     ];
     let bodies = [
-        hull(Vector::splat(0.25)),
+        hulls::cuboid(Vector::splat(0.25)).expect("a solid"),
         SharedShape::cuboid(0.25, 0.25, 0.25),
         SharedShape::cylinder(0.25, 0.25),
         SharedShape::ball(0.25),

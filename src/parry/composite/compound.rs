@@ -35,14 +35,14 @@ pub(crate) fn compounds<M, C, F>(
         for i in c1.bvh().intersect_aabb(&whole_2) {
             let part_1 = part(c1, &seams[0], i, corrects);
             let near_1 = c1.aabbs().at(i).loosened(prediction);
-            let pos_part1_2 = part_1.pos.map_or(*pos12, |pos| pos.inv_mul(pos12));
+            let pos_part1_2 = part_1.instead_of_whole(true, pos12);
             for k in c2.bvh().intersect_aabb(&near_1.transform_by(&pos21)) {
                 // Boxes around rotated boxes are large. With the compounds exchanged, many of them are apart.
                 if !box_in(c2, k, pos12).intersects(&near_1) {
                     continue;
                 }
                 let part_2 = part(c2, &seams[1], k, corrects);
-                let pos12 = part_2.pos.map_or(pos_part1_2, |pos| pos_part1_2 * pos);
+                let pos12 = part_2.instead_of_whole(false, &pos_part1_2);
                 sub_manifolds.update_pair(&pos12, &part_1, &part_2);
             }
         }

@@ -110,11 +110,7 @@ fn triangles_and_compound<M, C, F>(
     let update = |sub_manifolds: &mut SubManifolds<'_, M, C, F>, corrects: bool| {
         for i in compound.bvh().intersect_aabb(&all) {
             let part = compound::part(compound, &seams, i, corrects);
-            let pos12 = match part.pos {
-                Some(pos) if order.is_reversed() => pos.inv_mul(pos12),
-                Some(pos) => pos12 * pos,
-                None => *pos12,
-            };
+            let pos12 = part.instead_of_whole(order.is_reversed(), pos12);
             let near = sub_manifolds.reach(&part, &pos12, order);
             update_near(sub_manifolds, &pos12, triangles, (&part, &near), order);
         }
@@ -154,8 +150,7 @@ fn update_near<M, C, F>(
                 constraints: seams.map_or(Constraints::None, Constraints::OfTriangle),
                 ..SubShape::whole(triangle)
             };
-            let [part_1, part_2] = order.to_caller([&part, convex]);
-            sub_manifolds.update_pair(pos12, part_1, part_2);
+            sub_manifolds.update_part(pos12, &part, convex, order);
         });
     };
     sub_manifolds.update_group(update, || is_left.get());

@@ -35,6 +35,15 @@ impl<'a> SubShape<'a> {
             constraints: Constraints::None,
         }
     }
+
+    /// The pose of the second of two shapes in the frame of the first, if this part takes the place of one of them.
+    pub fn instead_of_whole(&self, is_of_first: bool, pos12: &Pose) -> Pose {
+        match self.pos {
+            Some(pos) if is_of_first => pos.inv_mul(pos12),
+            Some(pos) => pos12 * pos,
+            None => *pos12,
+        }
+    }
 }
 
 /// The manifolds of a pair during an update.
@@ -130,21 +139,17 @@ where
         whole.operand.aabb(&pose).loosened(self.prediction)
     }
 
-    /// A part and a whole shape; the shape with parts is first in `order`.
+    /// A part and another shape, from the pose of the whole; the shape with parts is first in `order`.
     pub fn update_part(
         &mut self,
         pos12: &Pose,
         part: &SubShape<'_>,
-        whole: &SubShape<'_>,
+        other: &SubShape<'_>,
         order: PairOrder,
     ) {
-        if order.is_reversed() {
-            let pos12 = part.pos.map_or(*pos12, |pos| pos12 * pos);
-            self.update_pair(&pos12, whole, part);
-        } else {
-            let pos12 = part.pos.map_or(*pos12, |pos| pos.inv_mul(pos12));
-            self.update_pair(&pos12, part, whole);
-        }
+        let [part_1, part_2] = order.to_caller([part, other]);
+        let pos12 = part.instead_of_whole(!order.is_reversed(), pos12);
+        self.update_pair(&pos12, part_1, part_2);
     }
 
     /// The position of the manifold of two parts. Mostly it is where it was, since parts come in the same

@@ -81,14 +81,7 @@ fn widest(
     middle: DVec3,
     dir: DVec3,
 ) -> Option<[Corner; 3]> {
-    let inset = |&[a, b, c]: &[Corner; 3]| {
-        let sides = [[a, b], [b, c], [c, a]];
-        let insets = sides.map(|[(from, _), (to, _)]| {
-            let inward = dir.cross(to - from).normalize_or_zero();
-            inward.dot(middle - from)
-        });
-        insets.into_iter().fold(f64::INFINITY, f64::min)
-    };
+    let inset = |triangle: &[Corner; 3]| ExtremeFeature::triangle(*triangle).inset(dir, middle);
     triangles.max_by(|a, b| inset(a).total_cmp(&inset(b)))
 }
 

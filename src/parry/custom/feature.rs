@@ -43,6 +43,16 @@ impl ExtremeFeature {
         self
     }
 
+    /// How far inside of a face the line along `normal` through a point is. The face is counter-clockwise seen against
+    /// `normal`.
+    pub fn inset(&self, normal: DVec3, p: DVec3) -> f64 {
+        let insets = self.edges().map(|[a, b]| {
+            let inward = normal.cross(b - a).normalize_or_zero();
+            inward.dot(p - a)
+        });
+        insets.fold(f64::INFINITY, f64::min)
+    }
+
     /// The area vector, which is perpendicular to a face.
     pub fn area(&self) -> DVec3 {
         let origin = self.corners[0].0;

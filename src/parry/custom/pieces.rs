@@ -40,11 +40,7 @@ impl SurfacePieces for CustomShape<'_> {
         let Some((face, normal)) = self.face(flat.normal) else {
             return 0.0;
         };
-        let insets = face.edges().map(|[a, b]| {
-            let inward = normal.cross(b - a).normalize_or_zero();
-            inward.dot(p - a)
-        });
-        insets.fold(f64::INFINITY, f64::min)
+        face.inset(normal, p)
     }
 
     fn ends_at_edges(&self, dir: DVec3) -> bool {

@@ -150,7 +150,7 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         if Constraints::are_none(constraints.0) {
             let is_kept = self.keep(manifold, &normals, &mut workspace.still_cache);
             if !is_kept {
-                let contacts = self.along_normal(manifold, &mut workspace.curved.patch);
+                let contacts = self.along_normal(&mut workspace.curved.patch);
                 manifold.set_contacts(normals.rounded, &contacts);
                 manifold.note_chosen(ids(self.cso), &mut workspace.still_cache);
             }
@@ -176,9 +176,9 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
     }
 
     /// The contacts along the normal of the query, whose patch is begun.
-    fn along_normal(&self, manifold: &KernelManifold<'_, '_>, patch: &mut Patch) -> Contacts {
+    fn along_normal(&self, patch: &mut Patch) -> Contacts {
         patch.complete_beside_deepest(self.cso, self.border_radii);
-        if let Some([first, second]) = self.last.and_then(|_| manifold.normals()) {
+        if let (Some(_), Hint::Contact([first, second])) = (self.last, self.hint) {
             let before = [first, self.cso.pose.direction_to_1(second)];
             patch.lead(before, self.max_distance);
         }
@@ -219,7 +219,7 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         }
         let patch = &mut workspace.curved.patch;
         let chosen = if is_as_it_was {
-            Some((normals.rounded, self.along_normal(manifold, patch)))
+            Some((normals.rounded, self.along_normal(patch)))
         } else {
             corrected.and_then(|corrected| self.along_corrected(&pair, normals, &corrected, patch))
         };
