@@ -6,8 +6,8 @@ use bevy_ecs::change_detection::Tick;
 use bevy_ecs::entity::{Entity, EntityHashMap};
 use bevy_ecs::prelude::Resource;
 use rapier3d::prelude::{
-    self as rapier, ActiveEvents, ColliderBuilder, ColliderHandle, NarrowPhase, PhysicsWorld,
-    RigidBodyBuilder, RigidBodyHandle,
+    self as rapier, ActiveEvents, ColliderBuilder, ColliderHandle, NarrowPhase, PhysicsHooks,
+    PhysicsWorld, RigidBodyBuilder, RigidBodyHandle,
 };
 
 use super::collision::{CollisionEvent, CollisionRecorder};
@@ -46,6 +46,27 @@ pub struct PhysicsContext {
     /// Bodies and colliders that you insert here are stepped with the others and left alone;
     /// those of entities come and go with their components.
     pub world: PhysicsWorld,
+    /// Called within each step for colliders with `active_hooks`; none unless you set it. The `user_data` of a
+    /// `ColliderBuilder` tells a hook which collider it is about.
+    ///
+    /// ```
+    /// use isa_gjk::bevy::PhysicsContext;
+    /// use rapier3d::prelude::{ContactModificationContext, PhysicsHooks};
+    ///
+    /// struct Ice;
+    ///
+    /// impl PhysicsHooks for Ice {
+    ///     fn modify_solver_contacts(&self, context: &mut ContactModificationContext) {
+    ///         if let Some(manifold) = context.rigid_mut() {
+    ///             *manifold.friction = 0.0;
+    ///         }
+    ///     }
+    /// }
+    ///
+    /// let mut context = PhysicsContext::default();
+    /// context.hooks = Box::new(Ice);
+    /// ```
+    pub hooks: Box<dyn PhysicsHooks + Send + Sync>,
     dispatcher: IsaGjkDispatcher,
     entities: EntityHashMap<Handles>,
     owners: HashMap<ColliderHandle, Entity>,
@@ -70,6 +91,7 @@ impl Default for PhysicsContext {
                 narrow_phase,
                 ..PhysicsWorld::default()
             },
+            hooks: Box::new(()),
             dispatcher,
             entities: EntityHashMap::default(),
             owners: HashMap::new(),
@@ -193,9 +215,9 @@ impl PhysicsContext {
     /// Steps the world and returns the pairs that began or ceased to touch.
     pub(super) fn step(&mut self) -> Vec<CollisionEvent> {
         let recorder = CollisionRecorder::default();
-        let world = &mut self.world;
+        let (world, hooks) = (&mut self.world, &*self.hooks);
         self.dispatcher
-            .with_unchanged_shapes(|| world.step_with_events(&(), &recorder));
+            .with_unchanged_shapes(|| world.step_with_events(hooks, &recorder));
         let events = recorder.into_events().into_iter();
         let told = events
             .filter_map(|event| CollisionEvent::new(event, |collider| self.entity(collider)))

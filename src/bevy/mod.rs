@@ -39,7 +39,8 @@
 //! ```
 //!
 //! There is one collider for each body; for a body of several shapes use `SharedShape::compound`. Joints,
-//! queries and everything else of rapier are reached through [`PhysicsContext::world`]. Some types have the
+//! queries and everything else of rapier are reached through [`PhysicsContext::world`], and its physics hooks are
+//! [`PhysicsContext::hooks`]; only its contact force events are not passed on. Some types have the
 //! same names as rapier's: import them by name, and they take precedence over `rapier3d::prelude::*`.
 
 mod collision;

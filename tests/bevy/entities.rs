@@ -1,5 +1,7 @@
 //! Bodies as entities: what is spawned, changed and removed in a Bevy world happens in rapier's.
 
+use std::sync::atomic::{AtomicBool, Ordering};
+
 use bevy_ecs::message::MessageCursor;
 use bevy_ecs::prelude::*;
 use isa_gjk::HullShape;
@@ -7,7 +9,10 @@ use isa_gjk::bevy::{
     Collider, CollisionEvent, NarrowPhaseStats, PhysicsContext, PhysicsSystems, PhysicsTransform,
     RigidBody, Velocity, install,
 };
-use rapier3d::prelude::{ColliderBuilder, Real, RigidBodyBuilder, SharedShape, Vector};
+use rapier3d::prelude::{
+    ActiveHooks, ColliderBuilder, PairFilterContext, PhysicsHooks, Real, RigidBodyBuilder,
+    SharedShape, SolverFlags, Vector,
+};
 
 /// Half the side of the cubes that fall, in metres.
 const HALF: Real = 0.25;
@@ -398,4 +403,29 @@ fn the_systems_of_a_user_run_before_or_after_the_step() {
     simulation.spawn_cube(0.0);
     simulation.run(3);
     assert_eq!(simulation.world.resource::<Seen>().0, [1.0, 2.0, 3.0]);
+}
+
+/// A hook can let bodies through, and take that back.
+#[test]
+fn the_hooks_of_a_context_are_called_in_its_steps() {
+    struct LetsPass(AtomicBool);
+    impl PhysicsHooks for &'static LetsPass {
+        fn filter_contact_pair(&self, _: &PairFilterContext) -> Option<SolverFlags> {
+            (!self.0.load(Ordering::Relaxed)).then(SolverFlags::default)
+        }
+    }
+    static LETS_PASS: LetsPass = LetsPass(AtomicBool::new(false));
+
+    let mut context = PhysicsContext::default();
+    context.hooks = Box::new(&LETS_PASS);
+    let (mut simulation, _) = Simulation::with_floor(context);
+    let hooked = ColliderBuilder::new(cube(HALF)).active_hooks(ActiveHooks::FILTER_CONTACT_PAIRS);
+    let place = PhysicsTransform::from_xyz(0.0, HALF, 0.0);
+    let light = RigidBody(RigidBodyBuilder::dynamic().can_sleep(false));
+    let cube = simulation.spawn((Collider(hooked), light, place));
+    simulation.run(30);
+    assert_near(simulation.height(cube), HALF);
+    LETS_PASS.0.store(true, Ordering::Relaxed);
+    simulation.run(60);
+    assert!(simulation.height(cube) < -1.0, "it falls through the floor");
 }
