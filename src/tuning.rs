@@ -7,6 +7,10 @@ use crate::tolerance::{BOWL_LOSS, KEPT_DRIFT};
 /// hulls of a hundred vertices, whose dihedral angles are about this large.
 pub(crate) const TILT: f64 = 0.2;
 
+/// A separating axis is kept in the frame of the second shape if that is so many times as large as the first. There it
+/// takes a rotation in each update, which is lost if both tumble alike.
+pub(crate) const MUCH_LARGER: f64 = 2.0;
+
 /// If its maximum distance exceeds this share of the pair's size, a query goes to GJK without a facet walk.
 /// Shapes that far apart are mostly nearest at vertices and edges. Chosen for tumbling piles, where few pairs
 /// are left to GJK.

@@ -4,7 +4,8 @@ use glam::{DVec3, Vec3};
 use parry3d::math::Pose;
 use parry3d::query::Unsupported;
 
-use super::kernel_manifold::{AxisFrame, KernelManifold};
+use super::axis_frame::AxisFrame;
+use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
 use super::own_contacts::{OwnCheck, ids};
 use super::still::{PresentContacts, Still};
@@ -17,7 +18,7 @@ use crate::parry::still_cache::{StillCache, StillPair};
 use crate::parry::workspace::Workspace;
 use crate::query::{Feature, LastContacts, Proximity};
 use crate::stats::{Cost, Stage};
-use crate::support::{Cso, FaceId, VertexId};
+use crate::support::{Cso, FaceId};
 use crate::tolerance::DEPTH_GAP;
 use crate::tuning::ABSURD_DEPTH;
 
@@ -51,14 +52,14 @@ impl UpdateManifold<'_> {
         workspace: &mut Workspace,
     ) -> Result<(), Unsupported> {
         let borders = pair.border_radii[0] + pair.border_radii[1];
-        let frame = AxisFrame::of(cso);
-        let mut manifold = KernelManifold::with_borders(&mut self.manifold, pair.order, frame);
+        let (order, frame) = (pair.order, AxisFrame::of(cso, pair.order));
+        let mut manifold = KernelManifold::with_borders(&mut self.manifold, order, frame);
         if present.last.is_none() {
             manifold.read_contacts(cso.pose, &mut present.last);
         }
         let mut cost = Cost::default();
         let last = present.last.as_ref();
-        let hint = manifold.hint(last);
+        let hint = manifold.hint(cso, last);
         let mut query = CurvedQuery {
             cso,
             border_radii: pair.border_radii,
@@ -70,7 +71,7 @@ impl UpdateManifold<'_> {
         let (answer, mut stage) = query.run(hint).ok_or(Unsupported)?;
         match answer {
             CurvedAnswer::SpheresApart => manifold.forget(),
-            CurvedAnswer::Separated(apart) => manifold.set_axis(apart.axis, apart.ids),
+            CurvedAnswer::Separated(apart) => manifold.set_axis(apart.axis, apart.ids, cso.pose),
             CurvedAnswer::Near {
                 signed_distance,
                 normal,
@@ -227,13 +228,12 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
         match pair.uncovered(chosen, self.least, along) {
             Some((normals, contacts)) => manifold.set_contacts(normals, &contacts),
             // There is no contact, but the next query has a place to start from.
-            None => manifold.set_axis(self.normal, [VertexId::default(); 2]),
+            None => manifold.set_axis(self.normal, Default::default(), self.cso.pose),
         }
         false
     }
 
-    /// The contacts along a corrected normal, or along that of the query. There is none if no place along the
-    /// corrected one is within reach: what rolls over a triangle is deepest over another.
+    /// The contacts along a corrected normal, or the query's. What rolls over a triangle is deepest over another.
     fn along_corrected(
         &self,
         pair: &ConstrainedPair<'_, '_, A, B>,

@@ -44,9 +44,7 @@ impl HalfSpaceUpdate<'_, '_> {
         let has_contacts = !self.manifold.manifold.is_empty();
         // Every hull of a world is in a pair with its ground, and most of these pairs end here.
         if plane.is_sphere_apart(hull, self.max_distance) {
-            if has_contacts {
-                self.manifold.forget();
-            }
+            self.manifold.forget();
             return Stage::BoundingSpheres;
         }
         if has_contacts && self.last.is_none() {
@@ -56,8 +54,7 @@ impl HalfSpaceUpdate<'_, '_> {
         let near = plane.deepest(hull, start, cost);
         if near.signed_distance > self.max_distance {
             let vertices = [near.features[0].vertex(hull), VertexId::default()];
-            self.manifold
-                .set_stored_axis(-self.pair.other.normal, vertices);
+            self.manifold.set_axis(plane.normal, vertices, pose);
             return Stage::Axis;
         }
         if self.is_held(near.signed_distance, cache) || self.update_contacts(&near, scratch, cache)

@@ -4,10 +4,12 @@
 //! rapier nothing; a workspace would make it rebuild its solver graph in every step. So the memory is in
 //! unused fields of the manifold:
 //!
-//! - without points, `local_n1` is the separating axis in an [`AxisFrame`], or zero if none was needed: the
-//!   bounding spheres are apart since the last contact. As in parry, it leads from the caller's first shape to
-//!   the second: one-way platforms learn from it from where a body comes. `local_n2`, which is unused then,
-//!   contains two vertices as whole numbers, which were extreme when the axis was found;
+//! - without points, `local_n1` is the separating axis, or zero if none was needed: the bounding spheres are apart
+//!   since the last contact. As in parry, it leads from the caller's first shape to the second, in the frame of the
+//!   first: one-way platforms learn from it from where a body comes. Where the axis is kept in this frame (see
+//!   [`AxisFrame`]), `local_n2` contains two vertices as whole numbers, which were extreme when the axis was found.
+//!   Otherwise it is the axis in the frame of the second shape, outward from that, and each update turns `local_n1`
+//!   along, or clears it if the bounding spheres suffice;
 //! - with points, `local_n1` is the contact normal, and the feature ids of the first point are the features
 //!   in contact.
 //!
@@ -15,6 +17,7 @@
 
 use glam::{DVec3, Vec3};
 
+use super::axis_frame::{AxisFrame, unit};
 use super::erased::ErasedManifold;
 use super::inherit::ManifoldPoints;
 use super::packed_feature::unpack;
@@ -26,63 +29,6 @@ use crate::parry::pair::Pair;
 use crate::pose::{RelativePose, is_unit};
 use crate::query::{LastContacts, PairMemory};
 use crate::support::{Cso, Support, VertexId};
-use crate::tolerance::NEARLY_UNIT;
-
-/// The shape in whose frame a pair keeps its separating axis.
-#[derive(Clone, Copy)]
-pub(super) enum AxisFrame<'a> {
-    /// The kernels' first shape.
-    First,
-    /// Their second shape, with its pose in the frame of the first.
-    Second(&'a RelativePose),
-}
-
-impl<'a> AxisFrame<'a> {
-    /// The frame of the larger shape. If sizes differ, mostly the small shape tumbles over a floor or along a
-    /// wall, and in the frame of these the axis does not move.
-    #[inline]
-    pub fn of<A: Support, B: Support>(cso: &Cso<'a, A, B>) -> Self {
-        if cso.shape_2.radius() > cso.shape_1.radius() {
-            Self::Second(cso.pose)
-        } else {
-            Self::First
-        }
-    }
-
-    /// The greatest distance of a point of the other shape from the centre of its rotation: the origin of the caller's
-    /// second shape, which the caller's pose turns.
-    pub fn lever<A: Support, B: Support>(self, cso: &Cso<'_, A, B>, order: PairOrder) -> f64 {
-        let (first, second) = (cso.shape_1, cso.shape_2);
-        match (self, order) {
-            (Self::First, PairOrder::Given) => second.center().length() + second.radius(),
-            (Self::First, PairOrder::Reversed) => {
-                cso.pose.point_to_1(second.center()).length() + second.radius()
-            }
-            (Self::Second(pose), PairOrder::Given) => {
-                (first.center() - pose.translation()).length() + first.radius()
-            }
-            (Self::Second(_), PairOrder::Reversed) => first.center().length() + first.radius(),
-        }
-    }
-
-    /// Converts from the frame of the kernels' first shape.
-    #[inline]
-    fn to_stored(self, axis: DVec3) -> DVec3 {
-        match self {
-            Self::First => axis,
-            Self::Second(pose) => pose.direction_to_2(axis),
-        }
-    }
-
-    /// Converts to the frame of the kernels' first shape.
-    #[inline]
-    fn to_kernel(self, axis: DVec3) -> DVec3 {
-        match self {
-            Self::First => axis,
-            Self::Second(pose) => pose.direction_to_1(axis),
-        }
-    }
-}
 
 /// A manifold as the kernels see it: in their order of the shapes, without rounded borders.
 pub(super) struct KernelManifold<'a, 'm> {
@@ -125,21 +71,12 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
     #[inline(always)]
     pub fn memory(&self, last: Option<&LastContacts>) -> PairMemory {
         let (manifold, order) = (&*self.manifold, self.order);
-        let stored = if order.is_reversed() && !manifold.is_empty() {
-            *manifold.local_n2
-        } else {
-            *manifold.local_n1
-        };
-        let Some(axis) = unit(stored) else {
+        if manifold.is_empty() {
+            return self.axis();
+        }
+        let Some(axis) = unit(self.stored_normal()) else {
             return PairMemory::None;
         };
-        if manifold.is_empty() {
-            let n2 = *manifold.local_n2;
-            // Casts saturate, and NaN becomes 0: any vector is some pair of vertices.
-            let vertices = [n2.x, n2.y].map(|x| VertexId::from(x as u32));
-            let [axis, _] = order.to_kernel([axis, -axis]);
-            return PairMemory::Axis(self.frame.to_kernel(axis), vertices);
-        }
         let points = manifold.points();
         let deepest = match last {
             Some(last) => Some(last.deepest(axis)),
@@ -151,12 +88,51 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
         }
     }
 
+    /// The same, with vertices at which a search along an axis may start if the manifold has none.
+    #[inline]
+    pub fn memory_of<A: Support, B: Support>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        last: Option<&LastContacts>,
+    ) -> PairMemory {
+        match self.memory(last) {
+            PairMemory::Axis(axis, _) if self.keeps_axis_in_second() => {
+                PairMemory::Axis(axis, start_vertices(cso, axis))
+            }
+            memory => memory,
+        }
+    }
+
+    /// The axis of a manifold without points, and the extreme vertices if it has them.
+    #[inline]
+    fn axis(&self) -> PairMemory {
+        let [n1, n2] = [*self.manifold.local_n1, *self.manifold.local_n2];
+        let kept = if !self.keeps_axis_in_second() {
+            unit(n1)
+        } else if n1 != Vec3::ZERO {
+            unit(-n2)
+        } else {
+            None
+        };
+        let Some(axis) = kept else {
+            return PairMemory::None;
+        };
+        // Casts saturate, and NaN becomes 0: any vector is some pair of vertices.
+        let vertices = [n2.x, n2.y].map(|x| VertexId::from(x as u32));
+        let [axis, _] = self.order.to_kernel([axis, -axis]);
+        PairMemory::Axis(self.frame.to_kernel(axis), vertices)
+    }
+
     /// The memory of a pair with a curved shape, and its contacts.
-    pub fn hint(&self, last: Option<&LastContacts>) -> Hint {
+    pub fn hint<A: Support, B: Support>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        last: Option<&LastContacts>,
+    ) -> Hint {
         match (last, self.normals()) {
             (Some(_), Some(normals)) => Hint::Contact(normals),
             (Some(_), None) => Hint::None,
-            (None, _) => match self.memory(None) {
+            (None, _) => match self.memory_of(cso, None) {
                 PairMemory::Axis(axis, ids) => Hint::Apart(axis, ids),
                 _ => Hint::None,
             },
@@ -191,17 +167,15 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
         *self.manifold.local_n1 = Vec3::ZERO;
     }
 
-    /// Stores an axis and extreme vertices in a manifold without points.
-    #[inline(always)]
-    pub fn set_axis(&mut self, axis: DVec3, vertices: [VertexId; 2]) {
-        let axis = self.frame.to_stored(axis);
-        self.set_stored_axis(axis, vertices);
+    /// Whether the axis is kept in the frame of the caller's second shape.
+    #[inline]
+    pub fn keeps_axis_in_second(&self) -> bool {
+        self.frame.is_of_second(self.order)
     }
 
-    /// The same for an axis that is already in the frame in which it is stored, from the kernels' first shape to their
-    /// second.
-    #[inline]
-    pub fn set_stored_axis(&mut self, axis: DVec3, vertices: [VertexId; 2]) {
+    /// Stores an axis, in the frame of the kernels' first shape, and extreme vertices in a manifold without points.
+    #[inline(always)]
+    pub fn set_axis(&mut self, axis: DVec3, vertices: [VertexId; 2], pose: &RelativePose) {
         debug_assert!(is_unit(axis), "no unit vector: {axis}");
         debug_assert!(
             vertices
@@ -209,10 +183,36 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
                 .all(|&vertex| vertex.index() < 1 << f32::MANTISSA_DIGITS)
         );
         self.manifold.clear();
-        [*self.manifold.local_n1, _] = self.order.to_caller([axis, -axis].map(|n| n.as_vec3()));
+        if self.keeps_axis_in_second() {
+            self.set_both_axes(axis, pose);
+            return;
+        }
+        *self.manifold.local_n1 = if self.order.is_reversed() {
+            -pose.direction_to_2(axis).as_vec3()
+        } else {
+            axis.as_vec3()
+        };
         // Whole numbers up to 2^24 are exact in f32.
         let [x, y] = map_pair(vertices, |vertex| u32::from(vertex) as f32);
         *self.manifold.local_n2 = Vec3::new(x, y, 0.0);
+    }
+
+    /// The same in the frames of both shapes.
+    // perf: as `start_vertices`.
+    #[inline(never)]
+    fn set_both_axes(&mut self, axis: DVec3, pose: &RelativePose) {
+        let normals = [axis, -pose.direction_to_2(axis)];
+        self.set_normals(map_pair(normals, |normal| normal.as_vec3()));
+    }
+
+    /// Turns the axis that is kept in the frame of the second shape to that of the first.
+    // perf: as `start_vertices`.
+    #[inline(never)]
+    pub fn turn_axis(&mut self, axis: DVec3, pose: &RelativePose) {
+        let normals = [axis, -pose.direction_to_2(axis)];
+        [*self.manifold.local_n1, _] = self
+            .order
+            .to_caller(map_pair(normals, |normal| normal.as_vec3()));
     }
 
     /// Replaces the contacts. The new ones inherit the data (the solver's impulses) of the old ones.
@@ -235,10 +235,8 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
     }
 }
 
-/// The vector, if it has unit length up to rounding. Separations along it then have the same relative error.
-#[inline]
-fn unit(v: Vec3) -> Option<DVec3> {
-    let v = v.as_dvec3();
-    // This is also false for NaN.
-    ((v.length_squared() - 1.0).abs() < NEARLY_UNIT).then_some(v)
+// perf: inlined, what few pairs need made updates so long that the compiler called them (2 to 12 % more instructions).
+#[inline(never)]
+fn start_vertices<A: Support, B: Support>(cso: &Cso<'_, A, B>, axis: DVec3) -> [VertexId; 2] {
+    cso.start_vertices(axis)
 }

@@ -1,5 +1,6 @@
 //! The contact manifold of two convex shapes, from frame to frame.
 
+mod axis_frame;
 mod curved;
 mod erased;
 mod flush;

@@ -4,7 +4,8 @@
 use glam::DVec3;
 use parry3d::query::Unsupported;
 
-use super::kernel_manifold::{AxisFrame, KernelManifold};
+use super::axis_frame::AxisFrame;
+use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
 use super::own_contacts::{OwnCheck, are_near, are_on_plane};
 use super::update::UpdateManifold;

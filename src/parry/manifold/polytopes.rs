@@ -113,7 +113,10 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
         match pair.uncovered(contacts, pair.least(near), along) {
             Some((normals, contacts)) => write_corrected(cso, manifold, near, normals, contacts),
             // There is no contact, but the next query has a place to start from.
-            None => manifold.set_axis(near.normal, query::vertices(cso, near.features)),
+            None => {
+                let vertices = query::vertices(cso, near.features);
+                manifold.set_axis(near.normal, vertices, cso.pose);
+            }
         }
         false
     }

@@ -1,7 +1,8 @@
 //! Writes the answer of a query into a manifold.
 
+use super::axis_frame::AxisFrame;
 use super::erased::ErasedManifold;
-use super::kernel_manifold::{AxisFrame, KernelManifold};
+use super::kernel_manifold::KernelManifold;
 use super::own_contacts::ids;
 use super::polytopes::PolytopeContacts;
 use super::still::{PresentContacts, Still};
@@ -86,7 +87,7 @@ impl<B: Polytope> Sink for ManifoldSink<'_, '_, B> {
         if !manifold.manifold.is_empty() && self.last.is_none() {
             manifold.read_contacts(self.contacts.cso.pose, self.last);
         }
-        manifold.memory(self.last.as_ref())
+        manifold.memory_of(self.contacts.cso, self.last.as_ref())
     }
 
     #[inline]
@@ -97,8 +98,9 @@ impl<B: Polytope> Sink for ManifoldSink<'_, '_, B> {
 
     #[inline(always)]
     fn spheres_apart(&mut self) {
-        if !self.manifold.is_empty() {
-            self.kernel_manifold().forget();
+        let mut manifold = self.kernel_manifold();
+        if !manifold.manifold.is_empty() || manifold.keeps_axis_in_second() {
+            manifold.forget();
         }
     }
 
@@ -107,7 +109,13 @@ impl<B: Polytope> Sink for ManifoldSink<'_, '_, B> {
     #[inline]
     fn still_separated(&mut self, apart: &SeparatingAxis) {
         if self.manifold.is_empty() {
-            self.still_apart = Some(apart.separation);
+            let pose = self.contacts.cso.pose;
+            let mut manifold = self.kernel_manifold();
+            if manifold.keeps_axis_in_second() {
+                manifold.turn_axis(apart.axis, pose);
+            } else {
+                self.still_apart = Some(apart.separation);
+            }
         } else {
             self.separated(apart);
         }
@@ -115,7 +123,8 @@ impl<B: Polytope> Sink for ManifoldSink<'_, '_, B> {
 
     #[inline(always)]
     fn separated(&mut self, apart: &SeparatingAxis) {
-        self.kernel_manifold().set_axis(apart.axis, apart.ids);
+        let pose = self.contacts.cso.pose;
+        self.kernel_manifold().set_axis(apart.axis, apart.ids, pose);
     }
 
     #[inline(always)]

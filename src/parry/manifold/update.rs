@@ -4,9 +4,10 @@ use glam::Quat;
 use parry3d::math::{Pose, Real};
 use parry3d::query::Unsupported;
 
+use super::axis_frame::AxisFrame;
 use super::erased::ErasedManifold;
 use super::half_space::HalfSpaceUpdate;
-use super::kernel_manifold::{AxisFrame, KernelManifold};
+use super::kernel_manifold::KernelManifold;
 use super::polytopes::PolytopeContacts;
 use super::sink::ManifoldSink;
 use super::still::{PresentContacts, is_settled};
@@ -80,11 +81,12 @@ impl PairVisitor for UpdateManifold<'_> {
         if self.hold_if_proved(pair, at, &mut present, &workspace.still_cache, still_pair) {
             return Ok(());
         }
+        let frame = AxisFrame::of_callers_first(&pose, pair.order);
         let mut update = HalfSpaceUpdate {
             pair,
             pose: &pose,
             max_distance,
-            manifold: KernelManifold::new(&mut self.manifold, pair, AxisFrame::First),
+            manifold: KernelManifold::new(&mut self.manifold, pair, frame),
             still: present.still.as_ref(),
             last: &mut present.last,
         };
@@ -156,7 +158,7 @@ impl<'a> UpdateManifold<'a> {
         workspace: &mut Workspace,
         cost: &mut Cost,
     ) -> Result<Stage, Unsupported> {
-        let frame = AxisFrame::of(cso);
+        let frame = AxisFrame::of(cso, pair.order);
         let mut query = Query {
             cso,
             max_distance,
