@@ -5,14 +5,15 @@ use std::cell::Cell;
 use glam::{DVec3, Vec3};
 use parry3d::math::Pose;
 use parry3d::query::details::{NormalConstraints, NormalConstraintsPair};
-use parry3d::shape::TrianglePseudoNormals;
 
 use crate::manifold::Contacts;
+use crate::parry::leaning_normals::LeaningNormals;
 use crate::parry::order::PairOrder;
 use crate::parry::part_seams::PartSeams;
+use crate::query::Proximity;
 use crate::stats::Cost;
 use crate::support::{Cso, Support};
-use crate::tolerance::{GRAZING, UNCORRECTED};
+use crate::tolerance::UNCORRECTED;
 
 /// The constraints that correct the normals of a part's contacts. Computing them may cost more than finding
 /// that there is no contact.
@@ -47,6 +48,11 @@ impl<'a> Constraints<'a> {
         matches!(of_pair, [Self::None, Self::None])
     }
 
+    /// Whether they are the caller's own, of whose surface nothing else is known.
+    fn is_given(&self) -> bool {
+        matches!(self, Self::Given(_))
+    }
+
     fn triangle(self) -> Option<TriangleSeams<'a>> {
         match self {
             Self::OfTriangle(triangle) => Some(triangle),
@@ -72,39 +78,6 @@ impl<'a> Constraints<'a> {
                 None => f(None),
             },
         }
-    }
-}
-
-/// Pseudo-normals of a triangle. A direction that lies in its plane up to rounding counts as one to its front, or, if it
-/// has two sides, to that on which the other shape is. Hulls that stand upright in a floor have such normals.
-pub(crate) struct LeaningNormals {
-    normals: TrianglePseudoNormals,
-    is_behind: bool,
-}
-
-impl LeaningNormals {
-    /// For a shape that is beyond the triangle from `on_triangle` to `middle`.
-    pub fn towards(middle: Vec3, on_triangle: Vec3, normals: TrianglePseudoNormals) -> Self {
-        let is_behind = normals.two_sided && normals.face.dot(middle - on_triangle) < 0.0;
-        Self { normals, is_behind }
-    }
-}
-
-impl NormalConstraints for LeaningNormals {
-    fn project_local_normal_mut(&self, normal: &mut Vec3) -> bool {
-        let along_face = normal.dot(self.normals.face);
-        let level = GRAZING as f32;
-        let lean = if self.is_behind && (0.0..level).contains(&along_face) {
-            -level
-        } else if !self.is_behind && (-level..0.0).contains(&along_face) {
-            level
-        } else {
-            0.0
-        };
-        if lean != 0.0 {
-            *normal = (*normal + self.normals.face * lean).normalize();
-        }
-        self.normals.project_local_normal_mut(normal)
     }
 }
 
@@ -151,7 +124,36 @@ impl<A: Support, B: Support> ConstrainedPair<'_, '_, A, B> {
         let [c1, c2] = self.constraints;
         let is_possible =
             c1.with(|c1| c2.with(|c2| (c1, c2).project_local_normals(self.pos12, n1, n2)));
-        is_possible.then_some(corrected)
+        let is_direction = |normal: &Vec3| normal.try_normalize().is_some();
+        (is_possible && (!self.obeys() || corrected.normals.iter().all(is_direction)))
+            .then_some(corrected)
+    }
+
+    /// Whether no other normal than the corrected one may be used: the constraints are the caller's own. Those of meshes
+    /// and compounds also say what to do where they lead nowhere.
+    pub fn obeys(&self) -> bool {
+        self.constraints.iter().any(Constraints::is_given)
+    }
+
+    /// As in parry, the contact of overlapping shapes whose faces do not meet along the normal that the caller's
+    /// constraints allow: at the witness points, with their distance along it. No part beside this one has a contact
+    /// instead.
+    pub fn at_witness(
+        &self,
+        near: &Proximity,
+        corrected: &Corrected,
+        max_distance: f64,
+    ) -> Option<([Vec3; 2], Contacts)> {
+        let normals = self.order.to_kernel(corrected.normals);
+        let normal = normals[0].as_dvec3().normalize();
+        let signed_distance = normal.dot(near.on_2 - near.on_1);
+        let along = Proximity {
+            signed_distance,
+            normal,
+            ..*near
+        };
+        let contacts = Contacts::witness(&along, self.cso.pose);
+        (signed_distance <= max_distance).then_some((normals, contacts))
     }
 
     /// Whether the constraints leave the query's normals, which are in the kernels' order, as they are.

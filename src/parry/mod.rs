@@ -14,6 +14,7 @@ mod half_space;
 mod hull_cache;
 pub(crate) mod hull_shape;
 mod int_hash;
+mod leaning_normals;
 mod manifold;
 mod operand;
 mod order;

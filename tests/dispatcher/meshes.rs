@@ -107,7 +107,8 @@ fn deepest(manifold: &Manifold) -> Option<Real> {
     distances.reduce(Real::min)
 }
 
-/// What the hull and one triangle say that have never met.
+/// What the hull and one triangle say that have never met. A triangle whose constraints are given by a caller has a
+/// contact wherever it overlaps.
 fn alone(
     hull: &dyn Shape,
     place: &Pose,
@@ -181,6 +182,8 @@ fn each_triangle_has_the_contacts_that_it_has_alone() {
                                 );
                             }
                             (None, None) => {}
+                            // In a mesh, a triangle beside it has the contact.
+                            (None, Some(_)) if ground.name.ends_with("corrected") => {}
                             // On the brink of the prediction rounding decides.
                             (Some(one), None) | (None, Some(one)) => assert!(
                                 (one - PREDICTION).abs() < TOLERANCE,

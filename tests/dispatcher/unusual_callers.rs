@@ -127,3 +127,91 @@ fn a_shape_is_not_taken_for_what_it_shows() {
         }
     }
 }
+
+/// A cone of normals around an axis.
+struct Cone {
+    axis: Vector,
+    cos: Real,
+}
+
+impl NormalConstraints for Cone {
+    fn project_local_normal_mut(&self, normal: &mut Vector) -> bool {
+        let along = normal.dot(self.axis);
+        if along < self.cos {
+            let aside = (*normal - self.axis * along).normalize_or_zero();
+            *normal =
+                (self.axis * self.cos + aside * (1.0 - self.cos * self.cos).sqrt()).normalize();
+        }
+        true
+    }
+}
+
+/// Nothing beside the pair has a contact if it has none, and no other normal is allowed.
+#[test]
+fn the_constraints_of_a_caller_are_obeyed_and_leave_a_contact() {
+    let dispatcher = IsaGjkDispatcher::default();
+    let mut rng = Rng::new(144);
+    let mut overlaps = 0;
+    for _ in 0..300 {
+        let shapes = [
+            rng.hull(12, 1.0).shape,
+            SharedShape::cuboid(0.5, 0.4, 0.6),
+            SharedShape::cylinder(0.4, 0.5),
+            SharedShape::cone(0.4, 0.5),
+            rng.hull(40, 0.8).shape,
+            SharedShape::round_cylinder(0.3, 0.4, 0.1),
+        ];
+        let first = &*shapes[rng.count(0, 5)];
+        let second = &*shapes[[0, 2, 3][rng.count(0, 2)]];
+        let pose = rng.pose(0.8).to_f32();
+        let Ok(Some(deepest)) = dispatcher.contact(&pose, first, second, 0.0) else {
+            continue;
+        };
+        // Up to 75 degrees away from the normal of the query.
+        let cone = Cone {
+            axis: (deepest.normal1 + rng.direction().as_vec3() * 0.9).normalize(),
+            cos: 0.98,
+        };
+        let mut manifold = ContactManifold::new();
+        dispatcher
+            .update_manifold(
+                &pose,
+                [first, second],
+                [Some(&cone), None],
+                0.02,
+                &mut manifold,
+            )
+            .expect("supported");
+        let along = manifold.local_n1.dot(cone.axis);
+        let what = || format!("{:?} and {:?}", first.shape_type(), second.shape_type());
+        assert!(!manifold.points.is_empty(), "{} {deepest:?}", what());
+        assert!(along > cone.cos - 1e-5, "{}: {along}", what());
+        overlaps += 1;
+    }
+    assert!(overlaps > 100, "only {overlaps}");
+}
+
+/// A normal that is none allows no contact.
+#[test]
+fn constraints_that_give_no_direction_allow_no_contact() {
+    struct Nothing(Real);
+    impl NormalConstraints for Nothing {
+        fn project_local_normal_mut(&self, normal: &mut Vector) -> bool {
+            *normal = Vector::splat(self.0);
+            true
+        }
+    }
+    let dispatcher = IsaGjkDispatcher::default();
+    let hull = Rng::new(145).hull(20, 1.0).shape;
+    let pose = Pose::translation(0.3, 0.2, 0.1);
+    for (nothing, other) in [0.0, Real::NAN].into_iter().flat_map(|none| {
+        [SharedShape::cylinder(0.5, 0.5), hull.clone()].map(|other| (Nothing(none), other))
+    }) {
+        let mut manifold = ContactManifold::new();
+        let constraints: [Option<&dyn NormalConstraints>; 2] = [Some(&nothing), None];
+        dispatcher
+            .update_manifold(&pose, [&*hull, &*other], constraints, 0.02, &mut manifold)
+            .expect("supported");
+        assert!(manifold.points.is_empty() && manifold.local_n1.is_finite());
+    }
+}

@@ -17,7 +17,8 @@ use parry3d::shape::{
 use crate::parry::composite::compound;
 use crate::parry::composite::seams::Seams;
 use crate::parry::composite::sub_manifolds::{SubManifolds, SubShape};
-use crate::parry::constraints::{Constraints, LeaningNormals, TriangleSeams};
+use crate::parry::constraints::{Constraints, TriangleSeams};
+use crate::parry::leaning_normals::LeaningNormals;
 use crate::parry::order::PairOrder;
 
 /// A shape made of triangles.

@@ -243,8 +243,12 @@ impl<A: SurfacePieces, B: SurfacePieces> Near<'_, '_, A, B> {
     ) -> Option<([Vec3; 2], Contacts)> {
         let is_absurd = self.find_along(pair, corrected, patch);
         let found = self.within_reach(pair, corrected, patch);
-        if found.is_some() || self.least >= 0.0 || !(is_absurd || pair.is_beyond_border()) {
+        if found.is_some() || self.least >= 0.0 {
             return found;
+        } else if pair.obeys() {
+            return pair.at_witness(&self.proximity(), corrected, self.max_distance);
+        } else if !(is_absurd || pair.is_beyond_border()) {
+            return None;
         }
         // Overlapping shapes must be pushed apart, even if not along the corrected normal.
         patch.find(self.cso, self.normal, self.border_radii);

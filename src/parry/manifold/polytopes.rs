@@ -136,8 +136,12 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
         let found = self.along(pair, near, corrected);
         let is_edge_on = found.is_none();
         let found = found.filter(|(_, contacts)| contacts.len > 0);
-        if found.is_some() || pair.least(near) >= 0.0 || !(is_edge_on || pair.is_beyond_border()) {
+        if found.is_some() || pair.least(near) >= 0.0 {
             return found;
+        } else if pair.obeys() {
+            return pair.at_witness(near, corrected, self.max_distance);
+        } else if !(is_edge_on || pair.is_beyond_border()) {
+            return None;
         }
         // Overlapping shapes must be pushed apart, even if not along the corrected normal.
         Some(self.along_normal(near, normals))
