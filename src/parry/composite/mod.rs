@@ -19,6 +19,7 @@ mod compound;
 mod coplanar;
 mod mesh;
 mod nonlinear;
+mod nonlinear_cells;
 pub(crate) mod scene;
 pub(crate) mod seams;
 mod spread;

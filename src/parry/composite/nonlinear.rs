@@ -7,8 +7,7 @@ use parry3d::partitioning::BvhNode;
 use parry3d::query::{NonlinearRigidMotion, QueryDispatcher, ShapeCastHit};
 use parry3d::shape::{Ball, CompositeShape, Shape};
 
-use super::cells::Cells;
-use crate::tuning::{CELLS_IN_BOX, LOOSE_BALL, MOST_STRETCHES};
+use crate::tuning::LOOSE_BALL;
 
 /// A cast of a shape with parts and another shape, between two times.
 pub(super) struct PartsCast<'a, D> {
@@ -43,76 +42,15 @@ impl<D: QueryDispatcher> PartsCast<'_, D> {
         })
     }
 
-    /// The first impact of a cell.
-    pub fn run_cells(&self, cells: Cells<'_>) -> Option<ShapeCastHit> {
-        let (ball, ball_motion) = self.other_ball();
-        let mut first = None;
-        self.search(cells, &cells.aabb(), (&ball, &ball_motion), &mut first);
-        first
-    }
-
-    /// The first impact of the cells in a box, if it is earlier than the `first` one so far.
-    fn search(
-        &self,
-        cells: Cells<'_>,
-        aabb: &Aabb,
-        other: (&Ball, &NonlinearRigidMotion),
-        first: &mut Option<ShapeCastHit>,
-    ) {
-        let limit = first.map_or(self.times[1].next_up(), |hit| hit.time_of_impact);
-        if self.earliest(aabb, other) >= limit {
-            return;
-        }
-        let [x, y, z] = aabb.extents().to_array();
-        let length = x.max(y).max(z);
-        // Cells may have no extent.
-        let few = (CELLS_IN_BOX * cells.pitch())
-            .max(cells.aabb().extents().max_element() / MOST_STRETCHES);
-        if length.is_nan() || length <= few {
-            self.look_at(cells, aabb, first);
-            return;
-        }
-        let mut halves = [*aabb; 2];
-        let middle = aabb.center();
-        if length == x {
-            (halves[0].maxs.x, halves[1].mins.x) = (middle.x, middle.x);
-        } else if length == y {
-            (halves[0].maxs.y, halves[1].mins.y) = (middle.y, middle.y);
-        } else {
-            (halves[0].maxs.z, halves[1].mins.z) = (middle.z, middle.z);
-        }
-        for half in &halves {
-            self.search(cells, half, other, first);
-        }
-    }
-
-    /// The same, cell by cell.
-    fn look_at(&self, cells: Cells<'_>, aabb: &Aabb, first: &mut Option<ShapeCastHit>) {
-        cells.each_near(aabb, |cell| {
-            let motion = self.motion.prepend_translation(cell.place);
-            let hit = self.cast((&motion, cell.shape), (self.other_motion, self.other));
-            let is_earlier = |hit: &ShapeCastHit| {
-                first.is_none_or(|first| hit.time_of_impact < first.time_of_impact)
-            };
-            if let Some(hit) = hit.filter(is_earlier) {
-                *first = Some(ShapeCastHit {
-                    witness1: hit.witness1 + cell.place,
-                    subshape1: cell.id,
-                    ..hit
-                });
-            }
-        });
-    }
-
     /// A ball around the other shape, and its motion.
-    fn other_ball(&self) -> (Ball, NonlinearRigidMotion) {
+    pub fn other_ball(&self) -> (Ball, NonlinearRigidMotion) {
         let sphere = self.other.compute_local_bounding_sphere();
         let ball = loose_ball(sphere.radius, sphere.center);
         (ball, self.other_motion.prepend_translation(sphere.center))
     }
 
     /// No part in a box is met earlier. The other shape is in a ball.
-    fn earliest(&self, aabb: &Aabb, other: (&Ball, &NonlinearRigidMotion)) -> Real {
+    pub fn earliest(&self, aabb: &Aabb, other: (&Ball, &NonlinearRigidMotion)) -> Real {
         let [start, end] = self.times;
         let ball = loose_ball(aabb.half_extents().length(), aabb.center());
         if !ball.radius.is_finite() {
@@ -129,7 +67,7 @@ impl<D: QueryDispatcher> PartsCast<'_, D> {
         }
     }
 
-    fn cast(
+    pub fn cast(
         &self,
         (motion_1, shape_1): (&NonlinearRigidMotion, &dyn Shape),
         (motion_2, shape_2): (&NonlinearRigidMotion, &dyn Shape),
