@@ -101,6 +101,7 @@ impl Patch {
             ends,
             surface,
             ball,
+            ..
         }) = &self.pieces[shape]
         else {
             return 0.0;

@@ -132,10 +132,12 @@ impl SurfacePieces for Cone {
             return Piece::Flat(self.base(border));
         }
         let around = DVec3::new(dir.x, 0.0, dir.z).normalize_or(DVec3::X);
-        let moved = (around * cosine + DVec3::Y * sine) * border;
+        let normal = around * cosine + DVec3::Y * sine;
+        let moved = normal * border;
         let rim = around * radius - DVec3::Y * half_height;
         Piece::Line(Generator {
             ends: [rim + moved, DVec3::Y * half_height + moved],
+            normal,
             surface: RuledSurface {
                 origin: DVec3::ZERO,
                 axis: DVec3::Y,

@@ -113,6 +113,7 @@ impl SurfacePieces for Cylinder {
         let around = radius + border;
         Piece::Line(Generator {
             ends: [-half_height, half_height].map(|height| outward * around + DVec3::Y * height),
+            normal: outward,
             surface: RuledSurface {
                 origin: DVec3::ZERO,
                 axis: DVec3::Y,

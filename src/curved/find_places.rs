@@ -173,7 +173,7 @@ impl Patch {
             },
             [Piece::Flat(_), Piece::Line(line)] => self.add_line(1, &line),
             [Piece::Line(line), Piece::Flat(_)] => self.add_line(0, &line),
-            [Piece::Line(a), Piece::Line(b)] => self.add_two_lines([&a, &b]),
+            [Piece::Line(a), Piece::Line(b)] => self.add_beside_crossing([&a, &b]),
             _ => {}
         }
     }

@@ -5,8 +5,9 @@ use glam::DVec3;
 use super::patch::Patch;
 use super::piece::Generator;
 use super::place::{PiecePoint, Spot, by_shape};
+use crate::primitive::{middle_direction, stretch_beside};
 use crate::tolerance::ON_OUTLINE;
-use crate::tuning::{SHORT_LINE, SIDE_BY_SIDE_SINE};
+use crate::tuning::SHORT_LINE;
 
 impl Patch {
     /// The ends of the part of a line that is over a flat side.
@@ -28,60 +29,60 @@ impl Patch {
         }
     }
 
-    /// Two lines: both ends of their common part if they lie side by side, and where they cross.
-    pub(super) fn add_two_lines(&mut self, lines: [&Generator; 2]) {
-        let flatten = |v: DVec3| v - self.normal() * v.dot(self.normal());
-        let [u, v] = lines.map(|line| flatten(line.ends[1] - line.ends[0]));
-        let (Some(along), Some(other)) = (u.try_normalize(), v.try_normalize()) else {
+    /// Where two lines cross, seen along the normal.
+    pub(super) fn add_crossing(&mut self, lines: [&Generator; 2]) {
+        let [u, v] = lines.map(|line| line.ends[1] - line.ends[0]);
+        let beside = self.normal().cross(u);
+        let (length_squared, slope) = (beside.length_squared(), beside.dot(v));
+        if slope * slope <= ON_OUTLINE * ON_OUTLINE * length_squared * v.length_squared() {
             return;
-        };
-        let beside = self.normal().cross(along);
-        let sine = beside.dot(other);
-        let offset = lines[1].ends[0] - lines[0].ends[0];
-        if sine.abs() > ON_OUTLINE {
-            // Solve for the crossing, as a fraction of either line.
-            let t = -beside.dot(offset) / beside.dot(v);
-            let s = along.dot(offset + v * t) / u.length();
-            if (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) {
-                let spots = [Spot::Inside; 2];
-                let at = lines[0].ends[0].lerp(lines[0].ends[1], s);
-                let height = self
-                    .normal()
-                    .dot(lines[1].ends[0].lerp(lines[1].ends[1], t) - at);
-                self.push(PiecePoint { at, spots }, [0.0, height]);
-            }
         }
-        if sine.abs() <= SIDE_BY_SIDE_SINE {
-            self.add_common_line(lines, along, beside);
+        // Solve for the crossing, as a fraction of either line.
+        let offset = lines[1].ends[0] - lines[0].ends[0];
+        let t = -beside.dot(offset) / slope;
+        let along = beside.cross(self.normal());
+        let s = along.dot(offset + v * t) / length_squared;
+        if (0.0..=1.0).contains(&s) && (0.0..=1.0).contains(&t) {
+            let spots = [Spot::Inside; 2];
+            let [at, other] = [lines[0].ends[0] + u * s, lines[1].ends[0] + v * t];
+            let height = self.normal().dot(other - at);
+            self.push(PiecePoint { at, spots }, [0.0, height]);
         }
     }
 
-    fn add_common_line(&mut self, lines: [&Generator; 2], along: DVec3, beside: DVec3) {
-        let reach = lines.map(|line| {
-            let [a, b] = line.ends.map(|end| end.dot(along));
-            [a.min(b), a.max(b)]
-        });
-        let (low, high) = (reach[0][0].max(reach[1][0]), reach[0][1].min(reach[1][1]));
-        let [length_1, length_2] = reach.map(|[low, high]| high - low);
-        let shorter = length_1.min(length_2);
-        if high - low < SHORT_LINE * shorter {
-            return;
+    /// Beside where two lines cross: a place on either side, at most as far as their common part reaches.
+    pub(super) fn add_beside_crossing(&mut self, lines: [&Generator; 2]) {
+        let directions = lines.map(|line| line.ends[1] - line.ends[0]);
+        if let Some(along) = middle_direction(directions, self.normal()) {
+            self.add_common_line(lines, along);
         }
-        let middle = 0.5 * (low + high);
-        for (number, end) in [low, high].into_iter().enumerate() {
+    }
+
+    fn add_common_line(&mut self, lines: [&Generator; 2], along: DVec3) {
+        let axes = [along, self.normal().cross(along)];
+        let Some([low, high]) = common_stretch(lines, axes) else {
+            return;
+        };
+        let rounding = ON_OUTLINE * self.size();
+        for (number, towards) in [low - high, high - low].into_iter().enumerate() {
+            let mut at = [low, high][number];
             // If the normal is tilted, the surface point over a place is farther along the line than the place.
-            let mut at = end;
             for _ in 0..3 {
-                let Some(found) = self.across_lines(lines, [along, beside], at) else {
+                let Some(found) = self.across_lines(lines, axes, at) else {
                     break;
                 };
-                let over = self.beyond_ends(lines, &found, along, end - middle);
-                if over <= ON_OUTLINE * self.size() {
+                let beyond = |towards| self.beyond_ends(lines, &found, along, towards);
+                let over = beyond(towards);
+                if over > rounding {
+                    at -= 1.01 * over * towards.signum();
+                    continue;
+                }
+                // Of lines that cross beyond their ends, one may begin farther on.
+                if beyond(-towards) <= rounding {
                     let spots = [Spot::End(number), Spot::End(number)];
                     self.push(PiecePoint { at: found.0, spots }, found.1);
-                    break;
                 }
-                at -= 1.01 * over * (end - middle).signum();
+                break;
             }
         }
     }
@@ -94,16 +95,10 @@ impl Patch {
         [along, beside]: [DVec3; 2],
         at: f64,
     ) -> Option<(DVec3, [f64; 2])> {
-        let [p1, p2] = lines.map(|line| {
-            let [a, b] = line.ends.map(|end| end.dot(along));
-            line.ends[0].lerp(line.ends[1], (at - a) / (b - a))
-        });
-        let local = [
-            lines[0].surface.radius_at(p1).max(0.0),
-            lines[1].surface.radius_at(p2).max(0.0),
-        ];
-        let total = local[0] + local[1];
-        let share = if total > 0.0 { local[0] / total } else { 0.5 };
+        let [p1, p2] = at_coordinate(lines, along, at);
+        let [radius, other] = radii(lines, [p1, p2]);
+        let total = radius + other;
+        let share = if total > 0.0 { radius / total } else { 0.5 };
         // The surfaces are nearest where the way between the axes is divided in proportion to the radii.
         let place = p1 + beside * (beside.dot(p2 - p1) * share);
         let out = lines[0].exit(place, self.normal())?;
@@ -136,4 +131,42 @@ impl Patch {
         });
         beyond[0].max(beyond[1])
     }
+}
+
+/// From where to where two lines are near each other, along the first axis. The second one is square to it.
+fn common_stretch(lines: [&Generator; 2], [along, beside]: [DVec3; 2]) -> Option<[f64; 2]> {
+    let reach = lines.map(|line| {
+        let [a, b] = line.ends.map(|end| end.dot(along));
+        [a.min(b), a.max(b)]
+    });
+    let (low, high) = (reach[0][0].max(reach[1][0]), reach[0][1].min(reach[1][1]));
+    let [length_1, length_2] = reach.map(|[low, high]| high - low);
+    if high - low < SHORT_LINE * length_1.min(length_2) {
+        return None;
+    }
+    let apart = [low, high].map(|at| {
+        let [p1, p2] = at_coordinate(lines, along, at);
+        beside.dot(p2 - p1)
+    });
+    let total_radius = |at| {
+        let [radius_1, radius_2] = radii(lines, at_coordinate(lines, along, at));
+        radius_1 + radius_2
+    };
+    Some(stretch_beside([low, high], apart, total_radius))
+}
+
+/// The points of lines at a coordinate along them.
+fn at_coordinate(lines: [&Generator; 2], along: DVec3, at: f64) -> [DVec3; 2] {
+    lines.map(|line| {
+        let [a, b] = line.ends.map(|end| end.dot(along));
+        line.ends[0].lerp(line.ends[1], (at - a) / (b - a))
+    })
+}
+
+/// The radii of the surfaces at points of their lines.
+fn radii([first, second]: [&Generator; 2], [p1, p2]: [DVec3; 2]) -> [f64; 2] {
+    [
+        first.surface.radius_at(p1).max(0.0),
+        second.surface.radius_at(p2).max(0.0),
+    ]
 }

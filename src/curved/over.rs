@@ -8,7 +8,8 @@ use super::place::{ContactPlace, PiecePoint, Spot, by_shape};
 use crate::tolerance::ON_OUTLINE;
 
 impl Patch {
-    /// Adds the extreme points of the cores, moved along the normal, if they are over the other piece.
+    /// Adds the extreme points of the cores, moved along the normal, if they are over the other piece. Where two lines
+    /// cross, both surfaces are nearest although neither is extreme.
     pub(super) fn add_extremes(&mut self) {
         let extreme = self.extreme;
         let cores = [extreme.on_1, extreme.on_2()];
@@ -22,6 +23,9 @@ impl Patch {
             if let Some(other) = self.height_over(1 - shape, at) {
                 self.push(candidate, by_shape(shape, [mine, other]));
             }
+        }
+        if let [Piece::Line(first), Piece::Line(second)] = self.pieces {
+            self.add_crossing([&first, &second]);
         }
     }
 

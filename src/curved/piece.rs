@@ -66,6 +66,8 @@ impl Outline {
 pub struct Generator {
     /// Its ends.
     pub ends: [DVec3; 2],
+    /// The outward unit normal along it.
+    pub normal: DVec3,
     /// The surface that it is on.
     pub surface: RuledSurface,
     /// The balls inside the core that touch it along this line.
@@ -120,6 +122,7 @@ impl Piece {
         let outward = across(dir.normalize(), axis)?;
         Some(Self::Line(Generator {
             ends: [a, b].map(|end| end + outward * border),
+            normal: outward,
             surface: RuledSurface {
                 origin: a,
                 axis,
@@ -153,6 +156,7 @@ impl Piece {
             }
             Self::Line(line) => Self::Line(Generator {
                 ends: line.ends.map(|p| pose.point_to_1(p)),
+                normal: pose.direction_to_1(line.normal),
                 surface: RuledSurface {
                     origin: pose.point_to_1(line.surface.origin),
                     axis: pose.direction_to_1(line.surface.axis),
@@ -169,8 +173,7 @@ impl Generator {
     /// The distance along `outward` at which the line through `p` leaves the surface, near this generator.
     pub fn exit(&self, p: DVec3, outward: DVec3) -> Option<f64> {
         let [a, b] = self.ends;
-        let normal = self.surface.normal_at(a.midpoint(b));
-        let about = normal.dot(a - p) / normal.dot(outward);
+        let about = self.normal.dot(a - p) / self.normal.dot(outward);
         let at = p + outward * about;
         // On the line itself rounding may hide the root.
         let along = b - a;

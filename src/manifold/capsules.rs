@@ -5,9 +5,9 @@
 
 use glam::DVec3;
 
-use crate::primitive::nearest_share;
+use crate::primitive::{middle_direction, nearest_share, stretch_beside};
 use crate::tolerance::{CAPSULE_TOUCH, SAME_GAP};
-use crate::tuning::{SHORT_LINE, SIDE_BY_SIDE_SINE};
+use crate::tuning::SHORT_LINE;
 
 /// A segment with a rounded border.
 #[derive(Clone, Copy, Debug)]
@@ -179,12 +179,8 @@ fn common_line(
     normal: DVec3,
 ) -> Option<[Option<CapsuleContact>; 2]> {
     let radii = first.radius + second.radius;
-    let [u, v] = [first, second].map(|capsule| capsule.axis().reject_from_normalized(normal));
-    let along = u.try_normalize()?;
+    let along = middle_direction([first.axis(), second.axis()], normal)?;
     let beside = normal.cross(along);
-    if v.dot(beside).abs() > SIDE_BY_SIDE_SINE * v.length() {
-        return None;
-    }
     let ends = [first, second].map(|capsule| [capsule.a, capsule.b].map(|p| p.dot(along)));
     let [reach_1, reach_2] = ends.map(|[a, b]| [a.min(b), a.max(b)]);
     let (low, high) = (reach_1[0].max(reach_2[0]), reach_1[1].min(reach_2[1]));
@@ -192,8 +188,15 @@ fn common_line(
         return None;
     }
     let core = |capsule: &Capsule, [a, b]: [f64; 2], at| capsule.at((at - a) / (b - a));
+    let cores = |at: f64| (core(&first, ends[0], at), core(&second, ends[1], at));
+    let beside_first = |at: f64| {
+        let (c1, c2) = cores(at);
+        beside.dot(c2 - c1)
+    };
+    let apart = [low, high].map(beside_first);
+    let [low, high] = stretch_beside([low, high], apart, |_| radii);
     let contact = |at: f64, place| {
-        let (c1, c2) = (core(&first, ends[0], at), core(&second, ends[1], at));
+        let (c1, c2) = cores(at);
         // The surfaces are nearest where the way between the axes is divided in proportion to the radii.
         let offset = beside.dot(c2 - c1) * first.radius / radii;
         let on_line = c1 + beside * offset;

@@ -6,6 +6,7 @@
 
 mod ball;
 mod cone;
+mod crossing_lines;
 mod cuboid;
 mod cylinder;
 mod outline;
@@ -17,6 +18,7 @@ mod triangle;
 
 pub use ball::Ball;
 pub use cone::Cone;
+pub(crate) use crossing_lines::{middle_direction, stretch_beside};
 pub use cuboid::CuboidPolytope;
 pub use cylinder::Cylinder;
 pub(crate) use outline::Revolved;

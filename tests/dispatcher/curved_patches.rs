@@ -143,6 +143,54 @@ fn lines_have_two_ends() {
 }
 
 /// A spinning coin leaves its contacts where they are on the table.
+/// They lie between both lines, where these are beside each other by a tenth of both radii.
+#[test]
+fn what_crosses_has_a_place_on_either_side() {
+    const RADIUS: f64 = 0.1;
+    let depth = 1e-3;
+    let (log, capsule) = (
+        SharedShape::cylinder(0.5, RADIUS as f32),
+        SharedShape::capsule_y(0.5, RADIUS as f32),
+    );
+    for shapes in [[&log, &log], [&capsule, &capsule], [&log, &capsule]] {
+        for angle in [0.3_f64, 0.8, 1.4] {
+            let pose = ExactPose {
+                rotation: DQuat::from_rotation_x(angle),
+                translation: DVec3::X * (2.0 * RADIUS - depth),
+            };
+            let [first, second] = shapes;
+            let orders = [
+                (shapes, pose.to_f32()),
+                ([second, first], pose.to_f32().inverse()),
+            ];
+            for (shapes, pose) in orders {
+                let mut manifold = manifold(shapes, &pose);
+                let points = &mut manifold.points;
+                assert_eq!(points.len(), 3, "{angle}");
+                points.sort_by(|a, b| a.dist.total_cmp(&b.dist));
+                let [deepest, sides @ ..] = &points[..] else {
+                    unreachable!("there are three");
+                };
+                let off = f64::from(deepest.dist) + depth;
+                assert!(off.abs() < 1e-6, "{angle}: off by {off}");
+                let beside = 0.1 * RADIUS * (0.5 * angle).cos();
+                let lower = RADIUS - (RADIUS * RADIUS - beside * beside).sqrt();
+                for side in sides {
+                    let off = f64::from(side.dist) - (2.0 * lower - depth);
+                    assert!(off.abs() < 1e-6, "{angle}: off by {off}");
+                }
+                let from = deepest.local_p1.reject_from(manifold.local_n1);
+                let [a, b] =
+                    [0, 1].map(|i| sides[i].local_p1.reject_from(manifold.local_n1) - from);
+                let (sum, way) = (f64::from((a + b).length()), f64::from((a - b).length()));
+                let expected = 0.2 * RADIUS / (0.5 * angle).tan();
+                assert!(sum < 1e-4 * way, "{angle}: {a} {b}");
+                assert!((way - expected).abs() < 1e-4 * expected, "{angle}: {way}");
+            }
+        }
+    }
+}
+
 #[test]
 fn contacts_stay_under_a_spin() {
     let table = SharedShape::cuboid(2.0, 0.5, 2.0);
