@@ -143,5 +143,5 @@ fn cone(cone: &ParryCone) -> Option<Cone> {
 
 /// A length to which tolerances can be relative.
 fn positive(length: Real) -> Option<f64> {
-    (length > 0.0 && length.is_finite()).then(|| length.into())
+    (0.0 < length && length < Real::INFINITY).then(|| length.into())
 }
