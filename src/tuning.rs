@@ -160,8 +160,9 @@ pub(crate) const ROCKING_RISE: f64 = 1e-3;
 pub(crate) const ROLLING: f64 = 3e-4;
 
 /// A disc that rolls on its rim by at least this angle from one update to the next, in radians, has a contact ahead. A coin
-/// that wobbles on a table rolls by a tenth in each step, whatever its size.
-pub(crate) const LEAST_LEAD: f64 = 0.01;
+/// that wobbles on a table rolls by a tenth in each step, whatever its size; one that leans in a corner and swings rolls
+/// by a thousandth in each step when it is slow enough to fall asleep. With a hundredth in place of it, it does not.
+pub(crate) const LEAST_LEAD: f64 = 0.001;
 /// But none farther ahead than this: so wide a turn says little about the next one.
 pub(crate) const MOST_LEAD: f64 = 0.5;
 

@@ -18,7 +18,7 @@ const THIRDS: [[f64; 2]; 2] = {
 };
 
 impl Patch {
-    /// If a whole disc leans on a flat side and has rolled on its rim, the places beside its deepest one become one
+    /// If a disc leans on a flat side and has rolled on its rim, the places beside its deepest one become one
     /// ahead of that, and two that keep the disc from tipping over. `before` are the outward normals of both shapes
     /// when the contacts were chosen last, turned with the shapes.
     pub fn lead(&mut self, before: [DVec3; 2], max_distance: f64) {
@@ -47,15 +47,15 @@ impl Patch {
         let flat = self.flat(shape)?.side;
         let (center, radius) = flat.outline.circle()?;
         let turn = turn_about(flat.normal, before, self.outward(shape))?;
-        if turn.abs() < LEAST_LEAD || !self.is_whole_over(1 - shape, center, radius) {
+        if turn.abs() < LEAST_LEAD {
             return None;
         }
         let down = self.lean(shape, flat)? * radius;
-        if self.height_over(1 - shape, center - down)?.abs() <= max_distance {
-            return None;
-        }
         let aside = flat.normal.cross(down);
         let (sin, cos) = turn.clamp(-MOST_LEAD, MOST_LEAD).sin_cos();
-        Some([center, down, aside, down * cos + aside * sin])
+        let ahead = down * cos + aside * sin;
+        let height = |arm: DVec3| self.height_over(1 - shape, center + arm);
+        let (_, _, far) = (height(down)?, height(ahead)?, height(-down)?);
+        (far.abs() > max_distance).then_some([center, down, aside, ahead])
     }
 }

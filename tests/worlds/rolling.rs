@@ -167,3 +167,48 @@ fn what_wobbles_comes_to_rest() {
         }
     }
 }
+
+/// The greatest speed of turning, in the last of twenty seconds, of a cylinder that leans on a wall with its rim on the
+/// floor, and swings about the line between both.
+fn swung(narrow_phase: NarrowPhase, [half, radius, lean]: [Real; 3], is_recycled: bool) -> Real {
+    let mut world = PhysicsWorld {
+        narrow_phase,
+        ..PhysicsWorld::default()
+    };
+    world.integration_parameters.contact_recycling = is_recycled;
+    let floor = ColliderBuilder::cuboid(3.0, 0.5, 3.0).translation(Vector::new(0.0, -0.5, 0.0));
+    let wall = ColliderBuilder::cuboid(0.5, 2.0, 3.0).translation(Vector::new(-0.5, 2.0, 0.0));
+    world.insert_collider(floor, None);
+    world.insert_collider(wall, None);
+    let (sin, cos) = lean.sin_cos();
+    let place = Vector::new(radius * cos + half * sin, radius * sin + half * cos, 0.0);
+    let body = RigidBodyBuilder::dynamic()
+        .pose(Pose::from_parts(place, Rotation::from_rotation_z(-lean)))
+        .angvel(Vector::new(-cos, sin, 0.0) * 0.2)
+        .can_sleep(false);
+    let (body, _) = world.insert(body, ColliderBuilder::cylinder(half, radius));
+    let mut fastest = 0.0_f32;
+    for step in 0..1200 {
+        world.step();
+        if step >= 1140 {
+            fastest = fastest.max(world.bodies[body].angvel().length());
+        }
+    }
+    fastest
+}
+
+/// Where a rim rolls slowly over a floor and up a wall, a contact only at its lowest place feeds it with energy.
+#[test]
+fn what_swings_in_a_corner_does_not_gain_speed() {
+    for shape in [[0.03, 0.14, 0.9], [0.11, 0.17, 0.6], [0.11, 0.17, 0.9]] {
+        for is_recycled in [true, false] {
+            let ours = swung(testkit::world::ours(), shape, is_recycled);
+            let default = swung(NarrowPhase::new(), shape, is_recycled);
+            println!("{shape:?}, {is_recycled}: {ours}, default {default}");
+            // The coin swings on at 0.9, and as fast if it starts faster.
+            let most = if shape[0] < 0.1 { 1.0 } else { 0.2 };
+            assert!(ours <= most, "{shape:?}, {is_recycled}: {ours}");
+            assert!(ours < default, "{shape:?}, {is_recycled}: {ours} {default}");
+        }
+    }
+}
