@@ -225,10 +225,12 @@ pub fn distance_within<S: DistanceSubalgorithm, A: Support, B: Support>(
 }
 
 /// The outcome of a search that rounding ended. Its answer is good if the bounds are close enough. With a
-/// nearly flat simplex they may not be, and the direction of the nearest point may be arbitrary.
+/// nearly flat simplex they may not be, and the direction of the nearest point may be arbitrary. But shapes that the
+/// lower bound proves clearly apart have no depth to search for.
 fn ended<A: Support, B: Support>(cso: &Cso<'_, A, B>, closest: Closest) -> Outcome {
     let promised = DEPTH_GAP * cso.min_radius() + MIN_DIRECTED_DISTANCE * cso.size();
-    if closest.distance - closest.lower_bound <= promised {
+    let gap = closest.distance - closest.lower_bound;
+    if gap <= promised || gap < closest.lower_bound {
         Outcome::Disjoint(closest)
     } else {
         Outcome::Unsure(closest)
