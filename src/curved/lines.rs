@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::patch::Patch;
 use super::piece::Generator;
 use super::place::{PiecePoint, Spot, by_shape};
-use crate::primitive::{middle_direction, stretch_beside};
+use crate::primitive::{common_stretch, middle_direction, stretch_beside};
 use crate::tolerance::ON_OUTLINE;
 use crate::tuning::SHORT_LINE;
 
@@ -60,7 +60,7 @@ impl Patch {
 
     fn add_common_line(&mut self, lines: [&Generator; 2], along: DVec3) {
         let axes = [along, self.normal().cross(along)];
-        let Some([low, high]) = common_stretch(lines, axes) else {
+        let Some([low, high]) = near_stretch(lines, axes) else {
             return;
         };
         let rounding = ON_OUTLINE * self.size();
@@ -134,25 +134,22 @@ impl Patch {
 }
 
 /// From where to where two lines are near each other, along the first axis. The second one is square to it.
-fn common_stretch(lines: [&Generator; 2], [along, beside]: [DVec3; 2]) -> Option<[f64; 2]> {
-    let reach = lines.map(|line| {
-        let [a, b] = line.ends.map(|end| end.dot(along));
-        [a.min(b), a.max(b)]
-    });
-    let (low, high) = (reach[0][0].max(reach[1][0]), reach[0][1].min(reach[1][1]));
-    let [length_1, length_2] = reach.map(|[low, high]| high - low);
+fn near_stretch(lines: [&Generator; 2], [along, beside]: [DVec3; 2]) -> Option<[f64; 2]> {
+    let ends = lines.map(|line| line.ends.map(|end| end.dot(along)));
+    let [low, high] = common_stretch(ends);
+    let [length_1, length_2] = ends.map(|[a, b]| (b - a).abs());
     if high - low < SHORT_LINE * length_1.min(length_2) {
         return None;
     }
-    let apart = [low, high].map(|at| {
+    let beside_first = |at| {
         let [p1, p2] = at_coordinate(lines, along, at);
         beside.dot(p2 - p1)
-    });
+    };
     let total_radius = |at| {
         let [radius_1, radius_2] = radii(lines, at_coordinate(lines, along, at));
         radius_1 + radius_2
     };
-    Some(stretch_beside([low, high], apart, total_radius))
+    Some(stretch_beside([low, high], beside_first, total_radius))
 }
 
 /// The points of lines at a coordinate along them.

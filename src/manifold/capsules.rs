@@ -5,7 +5,7 @@
 
 use glam::DVec3;
 
-use crate::primitive::{middle_direction, nearest_share, stretch_beside};
+use crate::primitive::{common_stretch, middle_direction, nearest_share, stretch_beside};
 use crate::tolerance::{CAPSULE_TOUCH, SAME_GAP};
 use crate::tuning::SHORT_LINE;
 
@@ -182,8 +182,7 @@ fn common_line(
     let along = middle_direction([first.axis(), second.axis()], normal)?;
     let beside = normal.cross(along);
     let ends = [first, second].map(|capsule| [capsule.a, capsule.b].map(|p| p.dot(along)));
-    let [reach_1, reach_2] = ends.map(|[a, b]| [a.min(b), a.max(b)]);
-    let (low, high) = (reach_1[0].max(reach_2[0]), reach_1[1].min(reach_2[1]));
+    let [low, high] = common_stretch(ends);
     if high - low < SHORT_LINE * first.radius.min(second.radius) {
         return None;
     }
@@ -193,8 +192,7 @@ fn common_line(
         let (c1, c2) = cores(at);
         beside.dot(c2 - c1)
     };
-    let apart = [low, high].map(beside_first);
-    let [low, high] = stretch_beside([low, high], apart, |_| radii);
+    let [low, high] = stretch_beside([low, high], beside_first, |_| radii);
     let contact = |at: f64, place| {
         let (c1, c2) = cores(at);
         // The surfaces are nearest where the way between the axes is divided in proportion to the radii.

@@ -16,16 +16,23 @@ pub(crate) fn middle_direction([first, second]: [DVec3; 2], normal: DVec3) -> Op
     (first + second * first.dot(second).signum()).try_normalize()
 }
 
-/// The part of a stretch from `low` to `high` along two lines in which both are near each other. At its ends the second
-/// line is `beside` the first one by so much. `radii` gives the sum of the radii of the surfaces at a place. The whole
+/// The stretch that two lines share, from the places of their ends. It is empty if its end comes before its start.
+pub(crate) fn common_stretch(ends: [[f64; 2]; 2]) -> [f64; 2] {
+    let reach = ends.map(|[a, b]| [a.min(b), a.max(b)]);
+    [reach[0][0].max(reach[1][0]), reach[0][1].min(reach[1][1])]
+}
+
+/// The part of a stretch from `low` to `high` along two lines in which both are near each other. `beside` tells by how
+/// much the second line is beside the first one at a place, and `radii` the sum of the radii of the surfaces. The whole
 /// stretch if they are near each other nowhere.
 pub(crate) fn stretch_beside(
     [low, high]: [f64; 2],
-    beside: [f64; 2],
+    beside: impl Fn(f64) -> f64,
     radii: impl FnOnce(f64) -> f64,
 ) -> [f64; 2] {
-    let slope = (beside[1] - beside[0]) / (high - low);
-    let crossing = low - beside[0] / slope;
+    let [at_low, at_high] = [low, high].map(beside);
+    let slope = (at_high - at_low) / (high - low);
+    let crossing = low - at_low / slope;
     let way = CROSSING_REACH * radii(crossing.max(low).min(high)) / slope.abs();
     let near = [low.max(crossing - way), high.min(crossing + way)];
     // Of parallel lines, they are not numbers.

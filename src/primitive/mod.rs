@@ -18,7 +18,7 @@ mod triangle;
 
 pub use ball::Ball;
 pub use cone::Cone;
-pub(crate) use crossing_lines::{middle_direction, stretch_beside};
+pub(crate) use crossing_lines::{common_stretch, middle_direction, stretch_beside};
 pub use cuboid::CuboidPolytope;
 pub use cylinder::Cylinder;
 pub(crate) use outline::Revolved;

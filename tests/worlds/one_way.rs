@@ -22,6 +22,16 @@ impl PhysicsHooks for OneWay {
     }
 }
 
+/// Of this half width: a hull, a cuboid and a disc, 40 cm high.
+fn platforms(half_width: Real) -> [SharedShape; 3] {
+    let half = Vector::new(half_width, 0.2, half_width);
+    [
+        hulls::cuboid(half).expect("a solid"),
+        SharedShape::cuboid(half.x, half.y, half.z),
+        SharedShape::cylinder(half.y, half.x),
+    ]
+}
+
 /// Where a body is that starts at a height with a velocity.
 fn height_after(
     shapes: [&SharedShape; 2],
@@ -58,12 +68,7 @@ fn height_after(
 
 #[test]
 fn bodies_land_on_one_way_platforms_and_jump_through_them() {
-    let half = Vector::new(3.0, 0.2, 3.0);
-    let platforms = [
-        hulls::cuboid(half).expect("a solid"),
-        SharedShape::cuboid(half.x, half.y, half.z),
-        SharedShape::cylinder(half.y, half.x),
-    ];
+    let platforms = platforms(3.0);
     let bodies = [
         hulls::cuboid(Vector::splat(0.25)).expect("a solid"),
         SharedShape::cuboid(0.25, 0.25, 0.25),
@@ -90,12 +95,7 @@ fn bodies_land_on_one_way_platforms_and_jump_through_them() {
 /// first tells the normal in the frame of the platform, some fall through.)
 #[test]
 fn bodies_that_tumble_land_on_one_way_platforms() {
-    let half = Vector::new(6.0, 0.2, 6.0);
-    let platforms = [
-        hulls::cuboid(half).expect("a solid"),
-        SharedShape::cuboid(half.x, half.y, half.z),
-        SharedShape::cylinder(half.y, half.x),
-    ];
+    let platforms = platforms(6.0);
     let bodies = [
         hulls::cuboid(Vector::splat(0.25)).expect("a solid"),
         hulls::cuboid(Vector::splat(0.8)).expect("a solid"),

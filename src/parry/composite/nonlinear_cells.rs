@@ -114,8 +114,8 @@ mod tests {
 
     use super::*;
 
-    /// A body of 12 cm that falls fast, and turns, over a floor of 3,600 voxels of 10 cm. The search went through the
-    /// whole floor, and looked at some cells many times.
+    /// A body of 12 cm that falls fast, and turns, over a floor of 3,600 voxels of 10 cm. A search through the
+    /// whole floor would look at some cells many times.
     #[test]
     fn only_cells_near_the_way_are_looked_at() {
         let cells = (0..60).flat_map(|x| (0..60).map(move |z| IVector::new(x, 0, z)));

@@ -18,7 +18,7 @@ pub(super) enum AxisFrame<'a> {
 }
 
 impl<'a> AxisFrame<'a> {
-    /// The frame of the caller's second shape if that is the larger one, or else of the first. If sizes differ, mostly the
+    /// The frame of the caller's second shape if that is much larger, or else of the first. If sizes differ, mostly the
     /// small shape tumbles over a floor or along a wall, and in the frame of these the axis does not move.
     #[inline]
     pub fn of<A: Support, B: Support>(cso: &Cso<'a, A, B>, order: PairOrder) -> Self {

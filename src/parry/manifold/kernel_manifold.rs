@@ -201,18 +201,14 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
     // perf: as `start_vertices`.
     #[inline(never)]
     fn set_both_axes(&mut self, axis: DVec3, pose: &RelativePose) {
-        let normals = [axis, -pose.direction_to_2(axis)];
-        self.set_normals(map_pair(normals, |normal| normal.as_vec3()));
+        self.set_normals(outward_normals(axis, pose));
     }
 
     /// Turns the axis that is kept in the frame of the second shape to that of the first.
     // perf: as `start_vertices`.
     #[inline(never)]
     pub fn turn_axis(&mut self, axis: DVec3, pose: &RelativePose) {
-        let normals = [axis, -pose.direction_to_2(axis)];
-        [*self.manifold.local_n1, _] = self
-            .order
-            .to_caller(map_pair(normals, |normal| normal.as_vec3()));
+        [*self.manifold.local_n1, _] = self.order.to_caller(outward_normals(axis, pose));
     }
 
     /// Replaces the contacts. The new ones inherit the data (the solver's impulses) of the old ones.
@@ -233,6 +229,11 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
     pub fn set_normals(&mut self, normals: [Vec3; 2]) {
         [*self.manifold.local_n1, *self.manifold.local_n2] = self.order.to_caller(normals);
     }
+}
+
+/// An axis as normals of both of the kernels' shapes, each outward from its shape and in its frame.
+fn outward_normals(axis: DVec3, pose: &RelativePose) -> [Vec3; 2] {
+    [axis, -pose.direction_to_2(axis)].map(|normal| normal.as_vec3())
 }
 
 // perf: inlined, what few pairs need made updates so long that the compiler called them (2 to 12 % more instructions).
