@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 
 use crate::ids::FaceId;
 use crate::simd::f32x8;
-use crate::tolerance::{INSET_ROUNDING, PROOF_MARGIN};
+use crate::tolerance::{INSET_ROUNDING, KNIFE_EDGE, PROOF_MARGIN};
 use crate::tuning::CLEAR_BEND;
 
 /// With more faces than this, the number of bits of a mask, a look at the sides of one face costs less.
@@ -25,7 +25,7 @@ pub struct FacePlanes {
     /// Normals coordinate by coordinate, and offsets. Padding has planes at infinity.
     // Plain arrays: allocating memory for aligned ones takes four times as long.
     rows: Box<[[[f32; LANES]; 4]]>,
-    /// The largest offset.
+    /// The largest offset, or [`KNIFE_EDGE`] radii.
     farthest: f32,
 }
 
@@ -42,7 +42,7 @@ fn least_of(rows: &[f32x8; ROWS]) -> f32 {
 
 impl FacePlanes {
     /// From the normals and offsets of all faces. Those of slivers, which have no plane, are infinite.
-    pub fn new(planes: impl ExactSizeIterator<Item = (Vec3, f64)>) -> Self {
+    pub fn new(planes: impl ExactSizeIterator<Item = (Vec3, f64)>, radius: f64) -> Self {
         let count = if planes.len() > MOST { 0 } else { planes.len() };
         let mut rows = [[
             [0.0; LANES],
@@ -50,7 +50,7 @@ impl FacePlanes {
             [0.0; LANES],
             [f32::INFINITY; LANES],
         ]; ROWS];
-        let mut farthest = 0.0_f32;
+        let mut farthest = (KNIFE_EDGE * radius) as f32;
         for (i, (normal, offset)) in planes.take(count).enumerate() {
             let [x, y, z, distance] = &mut rows[i / LANES % ROWS];
             let (lane, offset) = (i % LANES, offset as f32);

@@ -114,6 +114,10 @@ pub const DEPTH_GAP: f64 = 1e-6;
 /// other and from the origin: a dozen roundings.
 pub const INSET_ROUNDING: f64 = 1e-6;
 
+/// With the rounding of a point this many radii away, a point that is beneath the planes of both faces at a knife's
+/// edge is in the hull: each of the two may be above the hull by [`FACE_FLATNESS`].
+pub const KNIFE_EDGE: f64 = 2.0 * FACE_FLATNESS / INSET_ROUNDING;
+
 /// How far (relative to the smaller radius) shapes are moved apart to find the witness points of their
 /// depth. Wide enough for GJK to see a direction; so narrow that the normal's error, an angle that costs
 /// no more depth than [`DEPTH_GAP`], shifts no point by a tenth of that.

@@ -96,7 +96,11 @@ impl FaceRecord {
 
 impl Faces {
     /// From the faces, with an end, and their corners.
-    pub(super) fn from_lists(polygons: Box<[FaceRecord]>, corners: Box<[FaceCorner]>) -> Self {
+    pub(super) fn from_lists(
+        polygons: Box<[FaceRecord]>,
+        corners: Box<[FaceCorner]>,
+        radius: f64,
+    ) -> Self {
         let count = polygons.len() - 1;
         let planes = polygons[..count]
             .iter()
@@ -108,7 +112,7 @@ impl Faces {
         let has_many_quads =
             !are_triangles && ends.filter(|[first, end]| end - first == 4).count() >= ROUND_SIDES;
         Self {
-            planes: FacePlanes::new(planes),
+            planes: FacePlanes::new(planes, radius),
             has_many_quads,
             polygons,
             count,

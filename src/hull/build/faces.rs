@@ -190,7 +190,7 @@ impl Builder<'_> {
 
     fn finish(mut self) -> (Faces, MergedFaces) {
         self.polygons.push(FaceRecord::end(&self.corners));
-        let faces = Faces::from_lists(self.polygons.into(), self.corners.into());
+        let faces = Faces::from_lists(self.polygons.into(), self.corners.into(), self.radius);
         (faces, self.merged)
     }
 }

@@ -71,7 +71,7 @@ impl SteepBuilder {
         let graph = self.walk_around_all(points.len(), radius)?;
         let corners = self.matrix.corners(polygons);
         self.planes.push(FaceRecord::end(&corners));
-        let faces = Faces::from_lists(self.planes.as_slice().into(), corners);
+        let faces = Faces::from_lists(self.planes.as_slice().into(), corners, radius);
         Some(Hull {
             oriented_box: faces.oriented_box(points, radius),
             search: SupportSearch::Scan(Scan::new(points, center, radius)?),
