@@ -1,10 +1,8 @@
-//! The constants that bear on accuracy, each with its reason. Those that only steer a choice are in
-//! `tuning`.
+//! The constants that bear on accuracy, each with its reason. Those that only steer a choice are in `tuning`.
 //!
-//! Shapes come with f32 coordinates (unit roundoff 6e-8). Distances, depths and their proofs are
-//! computed in f64 (1e-16), so that what is exact in the input stays decidable. Unless its comment
-//! names another factor, a tolerance is multiplied by a length of the shapes at hand; none is an
-//! absolute length.
+//! Shapes come with f32 coordinates (unit roundoff 6e-8). Distances, depths and their proofs are computed in f64
+//! (1e-16), so that what is exact in the input stays decidable. Unless its comment names another factor, a
+//! tolerance is multiplied by a length of the shapes at hand; none is an absolute length.
 
 /// The cosine of 1 degree, and its sine.
 const COS_1_DEGREE: f64 = 0.999_847_7;
@@ -94,12 +92,10 @@ pub const GJK_GAP_OF_SIZE: f64 = 1e-12;
 pub const GJK_CURVED_GAP: f64 = 1e-6;
 
 /// A distance below this share of the pair's size has no reliable direction. The penetration search, which
-/// works on planes, answers instead. For every query, shapes this near touch: rounding in f64 is far less,
-/// and one step of f32 far more.
+/// works on planes, answers instead. Shapes this near touch: rounding in f64 is far less, a step of f32 far more.
 pub const MIN_DIRECTED_DISTANCE: f64 = 1e-10;
 
-/// Proved bounds are widened by this share of the pair's size and offset: the rounding of a few f64 sums and
-/// products of coordinates.
+/// Proved bounds are widened by this share of the pair's size and offset: the rounding of a few f64 sums and products.
 pub const BOUNDS_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// The deepest contact of a manifold looks wrong where it is beyond proved bounds of its depth by more than

@@ -13,6 +13,7 @@ use crate::parry::manifold::UpdateManifold;
 use crate::parry::order::PairOrder;
 use crate::parry::pair::valid_pose;
 use crate::primitive::Revolved;
+use crate::stats::Stage;
 
 /// In the caller's order.
 struct BallContact {
@@ -55,6 +56,7 @@ pub(crate) fn update_ball(
         return Err(Unsupported);
     }
     let contact = BallContact::new(update.pos12, order, solid, radii)?;
+    update.stats.record_free(Stage::Feature);
     let manifold = &mut update.manifold;
     if contact.distance > update.prediction.into() {
         manifold.clear();

@@ -2,10 +2,11 @@
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::{TrackedContact, Unsupported};
-use parry3d::shape::{Capsule as ParryCapsule, PackedFeatureId, Shape};
+use parry3d::shape::{Capsule as ParryCapsule, PackedFeatureId, Shape, ShapeType};
 
 use crate::manifold::capsules::{Capsule, CapsuleContact, CapsuleContacts, Place};
 use crate::map_pair::map_pair;
+use crate::parry::far_apart::are_far_apart;
 use crate::parry::manifold::ErasedManifold;
 use crate::parry::pair::valid_pose;
 use crate::pose::RelativePose;
@@ -17,6 +18,13 @@ pub(crate) fn update_capsules(
     prediction: Real,
     manifold: &mut ErasedManifold<'_>,
 ) -> Result<(), Unsupported> {
+    let are_capsules = shapes
+        .iter()
+        .all(|shape| shape.shape_type() == ShapeType::Capsule);
+    if are_capsules && are_far_apart(pos12, shapes, prediction) {
+        manifold.clear();
+        return Ok(());
+    }
     let (pose, capsules) = pair_in_frame_1(pos12, shapes)?;
     let Some(contacts) = CapsuleContacts::new(capsules, prediction.into()) else {
         manifold.clear();

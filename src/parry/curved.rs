@@ -9,12 +9,14 @@ use crate::parry::balls::update_ball;
 use crate::parry::capsules::update_capsules;
 use crate::parry::convert::{self, Core, HalfSpace};
 use crate::parry::custom::has_support_map;
+use crate::parry::far_apart::are_far_apart;
 use crate::parry::manifold::UpdateManifold;
 use crate::parry::operand::is_hull;
 use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
 use crate::parry::workspace::ThreadWorkspace;
 use crate::primitive::Revolved;
+use crate::stats::Stage;
 
 /// Whether a shape is a cylinder or a cone, or may be curved since it is a user's own.
 fn is_curved(shape: &dyn Shape) -> bool {
@@ -54,6 +56,11 @@ fn update_curved(
     let [first, second] = order.to_kernel(shapes);
     if let Some(half_space) = first.as_shape() {
         return update_on_half_space(order, half_space, second, update);
+    }
+    if are_far_apart(update.pos12, shapes, update.prediction) {
+        update.manifold.forget();
+        update.stats.record_free(Stage::BoundingSpheres);
+        return Ok(());
     }
     // One by one: as parts of a pair they would be copied.
     let first = Core::of(first);

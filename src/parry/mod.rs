@@ -10,6 +10,7 @@ mod core;
 mod curved;
 mod custom;
 pub(crate) mod dispatcher;
+mod far_apart;
 mod half_space;
 mod hull_cache;
 pub(crate) mod hull_shape;

@@ -25,6 +25,7 @@ mod custom_shapes;
 mod exact_cases;
 mod fallback;
 mod families;
+mod far_apart;
 mod flagged_compounds;
 mod fuzz;
 mod hull_shape;

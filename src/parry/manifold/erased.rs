@@ -66,6 +66,14 @@ impl<'a> ErasedManifold<'a> {
         }
     }
 
+    /// Clears the memory of a pair whose bounding spheres are apart. To store an axis would cost a root and a
+    /// division, which is more than it would save the next query.
+    #[inline]
+    pub fn forget(&mut self) {
+        self.clear();
+        *self.local_n1 = Vec3::ZERO;
+    }
+
     /// Replaces the contacts. The new ones inherit the data of the old ones.
     #[inline]
     pub(super) fn replace(&mut self, points: &ManifoldPoints) {

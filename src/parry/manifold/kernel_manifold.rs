@@ -159,12 +159,10 @@ impl<'a, 'm> KernelManifold<'a, 'm> {
         cso.may_roll() && self.normals().is_some_and(|before| cso.rolls(before, now))
     }
 
-    /// Clears the memory of a pair whose bounding spheres are apart. To store an axis would cost a root and a
-    /// division, which is more than it would save the next query.
+    /// Clears the memory of a pair whose bounding spheres are apart.
     #[inline(always)]
     pub fn forget(&mut self) {
-        self.manifold.clear();
-        *self.manifold.local_n1 = Vec3::ZERO;
+        self.manifold.forget();
     }
 
     /// Whether the axis is kept in the frame of the caller's second shape.
