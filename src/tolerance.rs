@@ -143,6 +143,15 @@ pub const RAY_TOUCHING: f64 = 1e-8;
 /// velocities that are given in f32 and turned from frame to frame are off by a few roundings.
 pub const GRAZING: f64 = 1e-6;
 
+/// Components of the normal of a cast below this are rounding, and zero. To rapier's character controller, a wall whose
+/// normal points down at all is a ceiling, on which it looks for no step.
+pub const NORMAL_ROUNDING: f64 = 1e-6;
+
+/// Normals of casts are longer than 1 by this: four roundings, as many as one loses where it is turned by two
+/// quaternions of f32. On a floor whose normal is shorter than 1, rapier's character controller moves nowhere: it
+/// seems to slip.
+pub const NORMAL_STRETCH: f32 = 1.0 + 4.0 * f32::EPSILON;
+
 /// Contacts keep their places while the normal turns by less than 1 degree (cosine) from one update to the
 /// next. A larger turn means that other features came into contact.
 pub const KEPT_ANGLE_COS: f64 = COS_1_DEGREE;

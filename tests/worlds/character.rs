@@ -4,8 +4,10 @@
 //! slides along it, climbs steps and snaps to the ground. The same box walks through two equal
 //! worlds, of cuboids with rapier's dispatcher, and of hulls with ours.
 
-use rapier3d::control::{CharacterLength, KinematicCharacterController};
+use rapier3d::control::{CharacterAutostep, CharacterLength, KinematicCharacterController};
+use rapier3d::parry::shape::Cuboid;
 use rapier3d::prelude::*;
+use testkit::own_shape::OwnShape;
 use testkit::world::ours;
 
 const DT: Real = 1.0 / 60.0;
@@ -132,4 +134,118 @@ fn a_character_climbs_the_step_and_stops_at_the_wall() {
         (standing.y - 0.6 - OFFSET).abs() < 1.0e-3,
         "stands at {standing}"
     );
+}
+
+/// A staircase towards +z of eight steps, each 20 cm high and 50 cm deep, on a floor; as one mesh, or as hulls.
+fn stairs(as_mesh: bool) -> PhysicsWorld {
+    let mut world = PhysicsWorld {
+        narrow_phase: ours(),
+        ..PhysicsWorld::default()
+    };
+    let steps = (1..=8).map(|i| {
+        let height = 0.1 * i as Real;
+        let half = Vector::new(2.0, height, 0.25);
+        (half, Vector::new(0.0, height, 2.5 + 0.5 * i as Real))
+    });
+    let floor = (Vector::new(20.0, 0.5, 20.0), Vector::Y * -0.5);
+    let (mut points, mut triangles) = (vec![], vec![]);
+    for (half, place) in steps.chain([floor]) {
+        let (corners, faces) = Cuboid::new(half).to_trimesh();
+        let first = points.len() as u32;
+        points.extend(corners.into_iter().map(|corner| corner + place));
+        triangles.extend(faces.into_iter().map(|face| face.map(|i| i + first)));
+        if !as_mesh {
+            let step = ColliderBuilder::new(block(half, true));
+            world.insert_collider(step.translation(place), None);
+        }
+    }
+    if as_mesh {
+        let mesh = ColliderBuilder::trimesh(points, triangles).expect("a mesh");
+        world.insert_collider(mesh, None);
+    }
+    world.step();
+    world
+}
+
+/// How far a character comes from `place` in these steps, each with 2 m/s downwards.
+fn advance(
+    world: &PhysicsWorld,
+    shape: &SharedShape,
+    place: Vector,
+    steps: impl IntoIterator<Item = Vector>,
+) -> Vector {
+    let controller = KinematicCharacterController {
+        offset: CharacterLength::Absolute(OFFSET),
+        autostep: Some(CharacterAutostep {
+            min_width: CharacterLength::Absolute(0.2),
+            ..Default::default()
+        }),
+        ..Default::default()
+    };
+    let mut pose = Pose::from_translation(place);
+    let gravity = Vector::Y * (-2.0 * DT);
+    for step in steps {
+        let queries = world.query_pipeline();
+        let moved = controller.move_shape(DT, &queries, &**shape, &pose, step + gravity, |_| {});
+        pose.translation += moved.translation;
+    }
+    pose.translation
+}
+
+/// A normal that points down by a rounding would make a ceiling of the front of a step.
+#[test]
+fn every_shape_climbs_every_step() {
+    let own = OwnShape {
+        inner: block(Vector::new(0.3, 0.6, 0.3), true),
+        tells_features: true,
+        shown: None,
+    };
+    let shapes = [
+        ("cone", SharedShape::cone(0.6, 0.4)),
+        ("cylinder", SharedShape::cylinder(0.6, 0.3)),
+        (
+            "rounded cylinder",
+            SharedShape::round_cylinder(0.5, 0.2, 0.1),
+        ),
+        (
+            "rounded cuboid",
+            SharedShape::round_cuboid(0.2, 0.5, 0.2, 0.1),
+        ),
+        ("shape of a user's own", SharedShape::new(own)),
+    ];
+    for as_mesh in [false, true] {
+        let world = stairs(as_mesh);
+        for (name, shape) in &shapes {
+            let start = Vector::new(0.1, 0.62, 0.05);
+            let end = advance(&world, shape, start, [Vector::Z * (3.0 * DT); 240]);
+            assert!(
+                end.z > 8.0,
+                "the {name} came to {end}, not over the staircase (mesh: {as_mesh})"
+            );
+        }
+    }
+}
+
+/// Quaternions of f32 shorten some normals by a rounding.
+#[test]
+fn a_character_walks_on_floors_that_are_turned() {
+    let shape = SharedShape::capsule_y(0.3, 0.3);
+    for turn in (0..64).map(|i| 0.1 * i as Real) {
+        let mut world = PhysicsWorld {
+            narrow_phase: ours(),
+            ..PhysicsWorld::default()
+        };
+        let floor = ColliderBuilder::new(block(Vector::new(9.0, 0.5, 9.0), true));
+        world.insert_collider(floor.rotation(Vector::Y * turn), None);
+        world.step();
+        for direction in (0..8).map(|i| Rotation::from_rotation_y(0.7 * i as Real) * Vector::X) {
+            let start = Vector::Y * (0.5 + 0.6 + OFFSET);
+            let end = advance(&world, &shape, start, [direction * 0.05; 20]);
+            let way = direction.dot(end);
+            assert!(
+                (way - 1.0).abs() < 0.02,
+                "{way} m of 1 m on a floor turned by {turn}"
+            );
+        }
+    }
 }

@@ -17,7 +17,7 @@ use crate::ray_cast::{Impact, RayCast, ray_cast};
 use crate::simplex::Preferred;
 use crate::stats::Cost;
 use crate::support::{Polytope, Support};
-use crate::tolerance::GRAZING;
+use crate::tolerance::{GRAZING, NORMAL_ROUNDING, NORMAL_STRETCH};
 
 /// When shape 2, moving by `velocity` relative to shape 1 (in frame 1), meets shape 1. As with parry, a
 /// shape that does not move meets nothing.
@@ -168,10 +168,18 @@ pub(super) fn hit(time: f64, near: &Contact, status: ShapeCastStatus) -> ShapeCa
         time_of_impact: time as Real,
         witness1: near.point1,
         witness2: near.point2,
-        normal1: near.normal1,
-        normal2: near.normal2,
+        normal1: comparable(near.normal1),
+        normal2: comparable(near.normal2),
         status,
         subshape1: 0,
         subshape2: 0,
     }
+}
+
+/// As callers can compare it: see [`NORMAL_ROUNDING`] and [`NORMAL_STRETCH`].
+fn comparable(normal: Vector) -> Vector {
+    let is_rounding = |component: Real| f64::from(component.abs()) < NORMAL_ROUNDING;
+    let components = normal.to_array();
+    let cleared = components.map(|c| if is_rounding(c) { 0.0 } else { c });
+    Vector::from_array(cleared) * NORMAL_STRETCH
 }
