@@ -1,6 +1,6 @@
 //! The rapier world as a resource, and the entities that own its bodies and colliders.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use bevy_ecs::change_detection::Tick;
 use bevy_ecs::entity::{Entity, EntityHashMap};
@@ -11,6 +11,7 @@ use rapier3d::prelude::{
 };
 
 use super::collision::{CollisionEvent, CollisionRecorder};
+use super::disabled::{DisabledEntities, Synced};
 use crate::IsaGjkDispatcher;
 use crate::stats::Stats;
 
@@ -72,6 +73,7 @@ pub struct PhysicsContext {
     owners: HashMap<ColliderHandle, Entity>,
     /// Removed colliders whose last collisions end in the next step. They have an owner until then.
     removed: Vec<ColliderHandle>,
+    disabled: DisabledEntities,
     /// When we last wrote components. Anything that changed at another time was changed by the user.
     pub(super) written: Tick,
 }
@@ -96,6 +98,7 @@ impl Default for PhysicsContext {
             entities: EntityHashMap::default(),
             owners: HashMap::new(),
             removed: Vec::new(),
+            disabled: DisabledEntities::default(),
             written: Tick::default(),
         }
     }
@@ -204,6 +207,35 @@ impl PhysicsContext {
         if let Some(handle) = handles.and_then(|handles| handles.collider.take()) {
             self.removed.push(handle);
             self.world.remove_collider(handle);
+        }
+    }
+
+    /// Whether the entity was ever given a body that is not yet removed with its component.
+    pub(super) fn has(&self, entity: Entity) -> bool {
+        self.entities.contains_key(&entity)
+    }
+
+    /// Disables the body of a disabled entity, if it has one, until [`enable`](Self::enable).
+    pub(super) fn disable(&mut self, entity: Entity, synced: Synced) {
+        if self.disabled.insert(entity, synced)
+            && let Some(body) = self.body_mut(entity)
+        {
+            body.set_enabled(false);
+        }
+    }
+
+    /// The entities that are disabled no more, and when their components were last looked at.
+    pub(super) fn take_enabled(
+        &mut self,
+        is_disabled: impl Fn(Entity) -> bool,
+    ) -> BTreeMap<Entity, Synced> {
+        self.disabled.take_unless(is_disabled)
+    }
+
+    /// Lets the body take part again, unless its builder says otherwise.
+    pub(super) fn enable(&mut self, entity: Entity, builder: &RigidBodyBuilder) {
+        if let Some(body) = self.body_mut(entity) {
+            body.set_enabled(builder.enabled);
         }
     }
 

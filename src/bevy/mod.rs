@@ -11,7 +11,9 @@
 //!    [`CollisionEvent`]s, and updates [`NarrowPhaseStats`].
 //! 3. [`Writeback`](PhysicsSystems::Writeback) writes [`PhysicsTransform`] and [`Velocity`].
 //!
-//! Despawned entities and removed components leave the rapier world at once. Lengths are metres, times
+//! Despawned entities and removed components leave the rapier world at once. The bodies of entities with Bevy's
+//! `Disabled` are disabled in the next step, and return as they were, or as you changed them meanwhile, when the
+//! entity does. Lengths are metres, times
 //! seconds, angles radians, as rapier has them; one run of the schedule is one step of
 //! `integration_parameters.dt`, a sixtieth of a second unless you change it.
 //!
@@ -46,8 +48,10 @@
 mod collision;
 mod components;
 mod context;
+mod disabled;
 #[cfg(feature = "bevy_app")]
 mod plugin;
+mod sync;
 mod systems;
 
 pub use collision::CollisionEvent;

@@ -1,14 +1,13 @@
 //! One step of the schedule.
 
-use bevy_ecs::change_detection::Tick;
 use bevy_ecs::message::{MessageWriter, Messages};
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemChangeTick;
-use rapier3d::prelude::RigidBodyType;
 
 use super::collision::CollisionEvent;
-use super::components::{Collider, PhysicsTransform, RigidBody, Velocity};
+use super::components::{PhysicsTransform, RigidBody, Velocity};
 use super::context::PhysicsContext;
+use super::sync::sync;
 use crate::stats::Stats;
 
 /// The sets of systems that make a step, in their order.
@@ -116,72 +115,6 @@ pub(super) fn add_systems(schedule: &mut Schedule) {
 
 fn expire_messages(mut messages: ResMut<Messages<CollisionEvent>>) {
     messages.update();
-}
-
-type BodyQuery<'w> = (
-    Entity,
-    Ref<'w, RigidBody>,
-    Option<Ref<'w, Collider>>,
-    Ref<'w, PhysicsTransform>,
-    Ref<'w, Velocity>,
-);
-type AnythingChanged = Or<(
-    Changed<RigidBody>,
-    Changed<Collider>,
-    Changed<PhysicsTransform>,
-    Changed<Velocity>,
-)>;
-
-fn sync(mut context: ResMut<PhysicsContext>, bodies: Query<BodyQuery<'_>, AnythingChanged>) {
-    let context = &mut *context;
-    for (entity, body, collider, transform, velocity) in &bodies {
-        if body.is_changed() {
-            let builder = body.0.clone().pose((*transform).into());
-            let moving = builder.linvel(velocity.linear).angvel(velocity.angular);
-            context.set_body(entity, moving);
-        } else {
-            apply_user_changes(context, entity, &transform, &velocity);
-        }
-        if let Some(collider) = collider
-            && (collider.is_changed() || body.is_changed() && context.collider(entity).is_none())
-        {
-            context.set_collider(entity, &collider.0);
-        }
-    }
-}
-
-/// Moves a body to where the user moved its entity.
-fn apply_user_changes(
-    context: &mut PhysicsContext,
-    entity: Entity,
-    transform: &Ref<'_, PhysicsTransform>,
-    velocity: &Ref<'_, Velocity>,
-) {
-    let moved = changed_by_user(transform, context.written);
-    let pushed = changed_by_user(velocity, context.written);
-    if !(moved || pushed) {
-        return;
-    }
-    let Some(body) = context.body_mut(entity) else {
-        return;
-    };
-    if moved {
-        let pose = (**transform).into();
-        if body.body_type() == RigidBodyType::KinematicPositionBased {
-            body.set_next_kinematic_position(pose);
-        } else {
-            body.set_position(pose, true);
-        }
-    }
-    if pushed {
-        body.set_linvel(velocity.linear, true);
-        body.set_angvel(velocity.angular, true);
-    }
-}
-
-/// Each system that runs has a tick of its own, so none of the user's is that of [`write_back`].
-fn changed_by_user<C>(component: &Ref<'_, C>, written: Tick) -> bool {
-    component.is_changed() && component.last_changed() != written
 }
 
 fn step(

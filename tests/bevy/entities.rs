@@ -2,6 +2,7 @@
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use bevy_ecs::entity_disabling::Disabled;
 use bevy_ecs::message::MessageCursor;
 use bevy_ecs::prelude::*;
 use isa_gjk::HullShape;
@@ -428,4 +429,69 @@ fn the_hooks_of_a_context_are_called_in_its_steps() {
     LETS_PASS.0.store(true, Ordering::Relaxed);
     simulation.run(60);
     assert!(simulation.height(cube) < -1.0, "it falls through the floor");
+}
+
+/// As a prefab is: nothing of it is there before it is enabled.
+#[test]
+fn an_entity_that_is_spawned_disabled_gets_its_body_when_it_is_enabled() {
+    let (mut simulation, _) = Simulation::with_floor(PhysicsContext::default());
+    let start = PhysicsTransform::from_xyz(0.0, 2.0, 0.0);
+    let cube = simulation.spawn((Collider::from(cube(HALF)), start, Disabled));
+    simulation.run(30);
+    assert_eq!(simulation.sizes(), (1, 1));
+    simulation.world.entity_mut(cube).remove::<Disabled>();
+    simulation.run(120);
+    assert_eq!(simulation.sizes(), (2, 2));
+    assert_near(simulation.height(cube), HALF);
+}
+
+/// What lay on it falls, and it returns where it was, as fast as it was.
+#[test]
+fn a_disabled_entity_takes_no_part() {
+    let (mut simulation, _) = Simulation::with_floor(PhysicsContext::default());
+    let lower = simulation.spawn_cube(HALF);
+    let upper = simulation.spawn_cube(3.0 * HALF);
+    simulation.run(300);
+    simulation.world.entity_mut(lower).insert(Disabled);
+    let before = *simulation.get::<PhysicsTransform>(lower);
+    let heard = simulation.collisions(60);
+    assert_near(simulation.height(upper), HALF);
+    let stops = |entity: Entity| move |event: &&CollisionEvent| matches!(**event, CollisionEvent::Stopped(a, b) if a == entity || b == entity);
+    assert_eq!(heard.iter().filter(stops(lower)).count(), 2, "{heard:?}");
+    assert_eq!(*simulation.get::<PhysicsTransform>(lower), before);
+
+    simulation.world.despawn(upper);
+    simulation.world.entity_mut(lower).remove::<Disabled>();
+    simulation.run(60);
+    assert_near(simulation.height(lower), HALF);
+}
+
+#[test]
+fn changes_of_a_disabled_entity_hold_when_it_is_enabled() {
+    let (mut simulation, _) = Simulation::with_floor(PhysicsContext::default());
+    let cube = simulation.spawn_cube(HALF);
+    simulation.run(300);
+    simulation.world.entity_mut(cube).insert(Disabled);
+    simulation.run(10);
+    simulation.change(cube, |t: &mut PhysicsTransform| t.translation.y = 4.0);
+    simulation.change(cube, |c: &mut Collider| c.0.shape = self::cube(0.1));
+    simulation.run(10);
+    let handle = simulation.context().body(cube);
+    simulation.world.entity_mut(cube).remove::<Disabled>();
+    simulation.run(1);
+    assert_eq!(simulation.context().body(cube), handle, "still the same");
+    let height = simulation.height(cube);
+    assert!((3.9..4.0).contains(&height), "it falls from {height} m");
+    simulation.run(120);
+    assert_near(simulation.height(cube), 0.1);
+
+    simulation.world.entity_mut(cube).insert(Disabled);
+    simulation.run(1);
+    simulation.world.despawn(cube);
+    simulation.run(1);
+    assert_eq!(
+        simulation.sizes(),
+        (1, 1),
+        "despawned while it was disabled"
+    );
 }
