@@ -4,6 +4,10 @@
 //! (1e-16), so that what is exact in the input stays decidable. Unless its comment names another factor, a
 //! tolerance is multiplied by a length of the shapes at hand; none is an absolute length.
 
+mod casts;
+
+pub use casts::{GRAZED, NORMAL_ROUNDING, NORMAL_STRETCH, RAY_TOUCHING};
+
 /// The cosine of 1 degree, and its sine.
 const COS_1_DEGREE: f64 = 0.999_847_7;
 const SIN_1_DEGREE: f64 = 0.017_452_4;
@@ -134,23 +138,9 @@ pub const NEARLY_UNIT: f64 = 1e-6;
 /// Edges whose directions span less than this sine squared do not define a contact normal.
 pub const PARALLEL_EDGES: f64 = 1e-8;
 
-/// A ray cast has arrived if it is this near, relative to the pair's size and the way travelled (whose
-/// coordinates are rounded). This is the square root of f64's roundoff: a nearest point is a sum of
-/// coordinates, and a nearer one has no reliable direction in which the ray could advance.
-pub const RAY_TOUCHING: f64 = 1e-8;
-
 /// A motion counts as tangential if its share against the contact normal is below this: normals and
 /// velocities that are given in f32 and turned from frame to frame are off by a few roundings.
 pub const GRAZING: f64 = 1e-6;
-
-/// Components of the normal of a cast below this are rounding, and zero. To rapier's character controller, a wall whose
-/// normal points down at all is a ceiling, on which it looks for no step.
-pub const NORMAL_ROUNDING: f64 = 1e-6;
-
-/// Normals of casts are longer than 1 by this: four roundings, as many as one loses where it is turned by two
-/// quaternions of f32. On a floor whose normal is shorter than 1, rapier's character controller moves nowhere: it
-/// seems to slip.
-pub const NORMAL_STRETCH: f32 = 1.0 + 4.0 * f32::EPSILON;
 
 /// Contacts keep their places while the normal turns by less than 1 degree (cosine) from one update to the
 /// next. A larger turn means that other features came into contact.

@@ -229,3 +229,7 @@ pub(crate) const CELLS_AT_ONCE: f32 = 4.0;
 pub(crate) const MOST_STRETCHES: f32 = 10_000.0;
 /// A cast of turning shapes looks at the cells in a box one by one if it is no longer than so many cells.
 pub(crate) const CELLS_IN_BOX: f32 = 2.0;
+
+/// A cast is looked at once more if the shapes approach by less than this share of their velocity: then they may only
+/// graze the target distance. An edge that is passed a rounding too near shows less than 0.03.
+pub const MAY_GRAZE: f64 = 0.1;

@@ -109,3 +109,42 @@ fn casts_that_start_in_contact_end_at_once() {
         }
     }
 }
+
+/// A character that has stopped at a wall is up to a rounding nearer to it than it should be. Its way along the wall leads
+/// over the seam of two triangles, and then past the upper edge.
+#[test]
+fn a_way_along_a_wall_leads_over_its_seams() {
+    const TARGET: Real = 0.002;
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 0.5), (-1.0, 0.5)];
+    let corners = corners.map(|(x, y)| Vector::new(x, y, 0.0)).to_vec();
+    let wall = SharedShape::trimesh(corners, vec![[0, 1, 2], [0, 2, 3]]).expect("a mesh");
+    let shapes = [
+        ("cone", SharedShape::cone(0.06, 0.04), 0.04),
+        ("cylinder", SharedShape::cylinder(0.06, 0.03), 0.03),
+        ("capsule", SharedShape::capsule_y(0.03, 0.03), 0.03),
+        ("cuboid", SharedShape::cuboid(0.03, 0.06, 0.03), 0.03),
+        ("ball", SharedShape::ball(0.03), 0.03),
+    ];
+    let options = ShapeCastOptions {
+        target_distance: TARGET,
+        stop_at_penetration: false,
+        max_time_of_impact: 2.0,
+        ..ShapeCastOptions::default()
+    };
+    let dispatcher = IsaGjkDispatcher::default();
+    for (name, shape, half) in &shapes {
+        for (i, velocity) in (0..200).flat_map(|i| [(i, Vector::Y), (i, Vector::X)]) {
+            let x = -0.4 + 0.0037 * i as Real;
+            let nearer = 1e-9 * (i % 15) as Real;
+            let pose = Pose::translation(x, -0.8, half + TARGET - nearer);
+            let cast = |velocity| {
+                let hit = dispatcher.cast_shapes(&pose, velocity, &*wall, &**shape, options);
+                hit.expect("supported")
+            };
+            let hit = cast(velocity);
+            assert!(hit.is_none(), "the {name} stops at {hit:?}, from {pose:?}");
+            let hit = cast(velocity - Vector::Z * 0.01).expect("they approach");
+            assert!(hit.time_of_impact < 1e-3, "the {name} meets late: {hit:?}");
+        }
+    }
+}

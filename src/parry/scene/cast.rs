@@ -16,8 +16,9 @@ use crate::pose::ValidPose;
 use crate::ray_cast::{Impact, RayCast, ray_cast};
 use crate::simplex::Preferred;
 use crate::stats::Cost;
-use crate::support::{Polytope, Support};
-use crate::tolerance::{GRAZING, NORMAL_ROUNDING, NORMAL_STRETCH};
+use crate::support::{Cso, Polytope, Support};
+use crate::tolerance::{GRAZED, GRAZING, NORMAL_ROUNDING, NORMAL_STRETCH};
+use crate::tuning::MAY_GRAZE;
 
 /// When shape 2, moving by `velocity` relative to shape 1 (in frame 1), meets shape 1. As with parry, a
 /// shape that does not move meets nothing.
@@ -107,14 +108,8 @@ impl Cast<'_> {
         } else {
             velocity
         };
-        let impact = ray_cast::<Preferred, _, _>(
-            &cso,
-            velocity,
-            self.options.max_time_of_impact.into(),
-            pair.core_distance(self.target_distance(), cso.size()),
-            &mut Cost::default(),
-        );
-        match impact {
+        let reach = pair.core_distance(self.target_distance(), cso.size());
+        match self.impact(&cso, velocity, reach) {
             RayCast::Hit(impact) => Meeting::Hit(hit_at(&impact, velocity, &frame)),
             // This is also false for NaN.
             RayCast::Overlap if self.options.max_time_of_impact >= 0.0 => {
@@ -122,6 +117,36 @@ impl Cast<'_> {
             }
             RayCast::Miss | RayCast::Overlap => Meeting::Miss,
         }
+    }
+
+    /// Where the cores come within `reach` of each other; those that only graze it do not.
+    fn impact<A: Support, B: Support>(
+        &self,
+        cso: &Cso<'_, A, B>,
+        velocity: DVec3,
+        reach: f64,
+    ) -> RayCast {
+        let meet_within = |distance: f64| {
+            let until = self.options.max_time_of_impact.into();
+            ray_cast::<Preferred, _, _>(cso, velocity, until, distance, &mut Cost::default())
+        };
+        let found = meet_within(reach);
+        match found {
+            RayCast::Hit(impact) if self.may_graze(&impact, velocity) => {
+                match meet_within((reach - GRAZED * cso.size()).max(0.0)) {
+                    RayCast::Miss => RayCast::Miss,
+                    RayCast::Hit(_) | RayCast::Overlap => found,
+                }
+            }
+            _ => found,
+        }
+    }
+
+    /// Whether the shapes may come nearer than the target distance by no more than a rounding, as a body does that slides
+    /// along a wall at this distance and passes a seam.
+    fn may_graze(&self, impact: &Impact, velocity: DVec3) -> bool {
+        let approach = impact.normal.dot(velocity).abs();
+        self.target_distance() > 0.0 && approach < MAY_GRAZE * velocity.length()
     }
 
     /// Neither negative nor NaN.
