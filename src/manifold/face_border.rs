@@ -17,15 +17,51 @@ pub struct FaceBorder<I> {
     pub width: f64,
 }
 
+/// How high a border reaches, and the part of the face that is nearest there.
+#[derive(Clone, Copy)]
+pub struct Reach {
+    pub height: f64,
+    pub nearest: NearestPart,
+}
+
+/// A part of a face.
+#[derive(Clone, Copy)]
+pub enum NearestPart {
+    /// Its inside.
+    Inside,
+    /// The side of this number.
+    Side(usize),
+    /// The corner where this side begins.
+    Corner(usize),
+}
+
 impl<I: Iterator<Item = [DVec3; 2]> + Clone> FaceBorder<I> {
     /// How high the border reaches over a point along a unit vector, and at least how wide it is.
     pub fn height_over(&self, point: DVec3, normal: DVec3) -> f64 {
-        let around = self.sides.clone().map(|ends| {
+        self.reach_over(point, normal).height
+    }
+
+    /// The same, with the part of the face that is nearest there.
+    pub fn reach_over(&self, point: DVec3, normal: DVec3) -> Reach {
+        let mut reach = Reach {
+            height: self.plate_over(point, normal),
+            nearest: NearestPart::Inside,
+        };
+        for (i, ends) in self.sides.clone().enumerate() {
             let ends = ends.map(|end| end - point);
             let ball = last_crossing(ends[0], normal, self.width).unwrap_or(0.0);
-            ball.max(self.cylinder_over_origin(ends, normal))
-        });
-        around.fold(self.plate_over(point, normal).max(self.width), f64::max)
+            let cylinder = self.cylinder_over_origin(ends, normal);
+            for (height, nearest) in [
+                (ball, NearestPart::Corner(i)),
+                (cylinder, NearestPart::Side(i)),
+            ] {
+                if height > reach.height {
+                    reach = Reach { height, nearest };
+                }
+            }
+        }
+        reach.height = reach.height.max(self.width);
+        reach
     }
 
     /// How high the plate over the face reaches over a point; 0 if it is not over it.

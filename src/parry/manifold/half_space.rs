@@ -137,7 +137,7 @@ impl HalfSpaceUpdate<'_, '_> {
                 manifold::half_space_contacts(hull, self.pose, near, self.max_distance, scratch);
             let (border, least) = (self.pair.border_radii[0], near.signed_distance);
             if border != 0.0 && contacts.len > 1 {
-                contacts.fit_to_border(hull, near.features[0], near.normal, border, least);
+                contacts.fit_to_border(hull, near.normal, border, least);
             }
             self.manifold.set_contacts(normals.rounded, &contacts);
         }

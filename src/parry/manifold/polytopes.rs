@@ -56,7 +56,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
             let mut contacts = manifold::contacts(self.cso, near, self.max_distance, self.scratch);
             if manifold.border_radii != [0.0; 2] && contacts.len > 1 {
                 let (least, borders) = (near.signed_distance, manifold.border_radii);
-                contacts.fit_to_borders(self.cso, near.features, normals.exact, borders, least);
+                contacts.fit_to_borders(self.cso, normals.exact, borders, least);
             }
             manifold.set_contacts(normals.rounded, &contacts);
         }
@@ -111,7 +111,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
         };
         let along = |out: &Corrected| self.along(&pair, near, out);
         match pair.uncovered(contacts, pair.least(near), along) {
-            Some((normals, contacts)) => write_corrected(cso, manifold, near, normals, contacts),
+            Some((normals, contacts)) => write_corrected(cso, manifold, normals, contacts),
             // There is no contact, but the next query has a place to start from.
             None => {
                 let vertices = query::vertices(cso, near.features);
@@ -174,14 +174,13 @@ impl<B: Polytope> ConstrainedPair<'_, '_, Hull, B> {
 fn write_corrected<B: Polytope>(
     cso: &Cso<'_, Hull, B>,
     manifold: &mut KernelManifold<'_, '_>,
-    near: &Proximity,
     normals: [Vec3; 2],
     mut contacts: Contacts,
 ) {
     let borders = manifold.border_radii;
     if borders != [0.0; 2] {
         let along = map_pair(normals, |normal| normal.as_dvec3());
-        contacts.fit_to_borders(cso, near.features, along, borders, f64::NEG_INFINITY);
+        contacts.fit_to_borders(cso, along, borders, f64::NEG_INFINITY);
     }
     manifold.set_contacts(normals, &contacts);
 }
