@@ -3,6 +3,7 @@
 use glam::{DVec2, DVec3, Vec3};
 
 use super::clusters::FaceClusters;
+use super::convex_outline::{convex_outline, crosses};
 use super::faces::Faces;
 use super::graph::{EdgeGraph, FaceCorner, NO_EDGE};
 use super::lists::largest_first;
@@ -77,10 +78,11 @@ impl<'a> Cluster<'a> {
     }
 
     fn add_to(&self, clusters: &mut FaceClusters) {
-        let outline = self.outline();
+        let corners = self.corners().map(|corner| self.place(corner.vertex));
+        let outline = convex_outline(corners.collect());
         let covered = self.covered_nonmembers(&outline);
         let ends = outline.iter().cycle().skip(1);
-        let corners = outline.iter().zip(ends).map(|(&from, &to)| {
+        let corners = outline.iter().zip(ends).map(|(&(_, from), &(_, to))| {
             let slot = self.graph.edge_slot(from.into(), to.into());
             FaceCorner {
                 vertex: from,
@@ -139,50 +141,49 @@ impl<'a> Cluster<'a> {
         members.flat_map(move |&face| faces.polygon(face.into()))
     }
 
-    /// The convex outline of the members seen against the normal, counter-clockwise (Andrew, *Another
-    /// efficient algorithm for convex hulls in two dimensions*, IPL 9(5), 1979).
-    fn outline(&self) -> Vec<u16> {
+    /// A vertex seen against the normal.
+    fn place(&self, vertex: u16) -> (DVec2, u16) {
         let u = self.normal.any_orthonormal_vector();
         let v = self.normal.cross(u);
-        let place = |corner: &FaceCorner| {
-            let p = self.way_to(corner);
-            (DVec2::new(p.dot(u), p.dot(v)), corner.vertex)
-        };
-        let mut corners: Vec<(DVec2, u16)> = self.corners().map(place).collect();
-        corners
-            .sort_by(|(a, i), (b, j)| a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(i.cmp(j)));
-        corners.dedup();
-        let mut outline = half_outline(corners.iter());
-        outline.extend(half_outline(corners.iter().rev()));
-        outline
+        let p = self.points[usize::from(vertex)].as_dvec3() - self.corner;
+        (DVec2::new(p.dot(u), p.dot(v)), vertex)
     }
 
-    /// The faces that are not members, but meet a vertex of a member inside the outline: they lie partly under
-    /// it where it cuts across a bay.
-    fn covered_nonmembers(&self, outline: &[u16]) -> Vec<u16> {
-        let inside = self
-            .corners()
-            .map(|c| c.vertex)
-            .filter(|v| !outline.contains(v));
+    /// The faces that are not members, but lie partly under the outline, where it cuts across a bay: those around a
+    /// vertex of a member inside it, and those beyond edges that cross it, from one face to the next.
+    fn covered_nonmembers(&self, outline: &[(DVec2, u16)]) -> Vec<u16> {
+        let is_inside = |v: &u16| outline.iter().all(|(_, corner)| corner != v);
+        let inside = self.corners().map(|c| c.vertex).filter(is_inside);
         let around = inside.flat_map(|vertex| self.graph.faces_around(vertex.into()).flatten());
         let mut covered: Vec<u16> = around.filter(|face| !self.members.contains(face)).collect();
         covered.sort_unstable();
         covered.dedup();
+        let mut next = 0;
+        while let Some(&face) = covered.get(next) {
+            for side in 0..self.faces.polygon(face.into()).len() {
+                if let Some(other) = self.seen_beyond(face, side)
+                    && !self.members.contains(&other)
+                    && !covered.contains(&other)
+                    && crosses(self.side(face, side), outline)
+                {
+                    covered.push(other);
+                }
+            }
+            next += 1;
+        }
         covered
     }
-}
 
-/// Half of an outline, from the first point up to the last, which is left out.
-fn half_outline<'a>(corners: impl Iterator<Item = &'a (DVec2, u16)>) -> Vec<u16> {
-    let mut chain: Vec<(DVec2, u16)> = Vec::new();
-    for &corner in corners {
-        while let [.., (a, _), (b, _)] = chain[..]
-            && (b - a).perp_dot(corner.0 - a) <= 0.0
-        {
-            chain.pop();
-        }
-        chain.push(corner);
+    /// The face beyond a side of a face, if it is seen against the normal or a sliver.
+    fn seen_beyond(&self, face: u16, side: usize) -> Option<u16> {
+        let other = self.face_beyond(face, side)?;
+        let normal = self.faces.normal(other.into());
+        (normal == DVec3::ZERO || normal.dot(self.normal) > 0.0).then_some(other)
     }
-    chain.pop();
-    chain.into_iter().map(|(_, vertex)| vertex).collect()
+
+    /// Both ends of a side of a face, seen against the normal.
+    fn side(&self, face: u16, side: usize) -> [DVec2; 2] {
+        let corners = self.faces.polygon(face.into());
+        [side, (side + 1) % corners.len()].map(|i| self.place(corners[i].vertex).0)
+    }
 }

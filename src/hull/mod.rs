@@ -5,6 +5,7 @@ pub(crate) mod build;
 mod climb;
 mod cluster_growth;
 mod clusters;
+mod convex_outline;
 mod error;
 mod faces;
 mod graph;

@@ -10,7 +10,8 @@ use parry3d::math::{Pose, Real, Rotation, Vector};
 use parry3d::query::TrackedContact;
 use parry3d::shape::{ConvexPolyhedron, PackedFeatureId, SharedShape};
 
-use testkit::memory::{Manifold, UpdateManifolds};
+use testkit::generate::hull_of;
+use testkit::memory::{Manifold, UpdateManifolds, cold_manifold};
 use testkit::scanned::noisy_box;
 
 const HALF_HEIGHT: Real = 0.4;
@@ -477,5 +478,32 @@ fn both_ends_of_the_edge_that_bears_a_leaning_prism_are_contacts() {
                 }
             }
         }
+    }
+}
+
+/// The top of a hull is an arrowhead of two triangles that bend by less than one degree. The outline of both cuts across
+/// the bay of the arrowhead, where four other faces are: two at its notch, and two beyond these that do not touch it.
+#[test]
+fn contacts_in_the_bay_of_nearly_coplanar_faces_lie_on_the_faces_there() {
+    let top = [
+        Vector::new(-1.0, 0.0, 0.0),
+        Vector::new(1.0, 0.0, 0.0),
+        Vector::new(0.0, 1.0, 0.0),
+        Vector::new(0.0, 0.1, 0.0072),
+        Vector::new(0.0, 0.05, 0.0062),
+        Vector::new(0.0, -1.0, -0.1),
+    ];
+    let low = [(-1.0, 0.0), (1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
+    let low = low.map(|(x, y)| Vector::new(x, y, -1.0));
+    let corners: Vec<Vector> = top.into_iter().chain(low).collect();
+    let hull = hull_of(&corners).expect("a hull with all of these corners");
+    let above = SharedShape::cuboid(0.5, 0.5, 0.1);
+    let pose = Pose::translation(0.48, 0.0, 0.1072 + 0.001);
+    let dispatcher = IsaGjkDispatcher::default();
+    let manifold = cold_manifold(&dispatcher, &pose, [&hull.shape, &above], 0.1).expect("a hull");
+    assert_eq!(manifold.points.len(), 4);
+    for point in &manifold.points {
+        let off = hull.solid.distance_to_surface(point.local_p1.as_dvec3());
+        assert!(off < 1e-6, "{} is {off} off", point.local_p1);
     }
 }
