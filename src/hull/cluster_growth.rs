@@ -62,16 +62,21 @@ struct Cluster<'a> {
     /// The plane of the face that it grows from.
     normal: DVec3,
     corner: DVec3,
+    /// Two unit vectors in it.
+    axes: [DVec3; 2],
     members: Vec<u16>,
 }
 
 impl<'a> Cluster<'a> {
     fn new(points: &'a [Vec3], faces: &'a Faces, graph: &'a EdgeGraph, seed: u16) -> Self {
+        let normal = faces.normal(seed.into());
+        let u = normal.any_orthonormal_vector();
         Self {
             points,
             faces,
             graph,
-            normal: faces.normal(seed.into()),
+            normal,
+            axes: [u, normal.cross(u)],
             corner: at_first(points, faces.polygon(seed.into())),
             members: vec![seed],
         }
@@ -143,10 +148,8 @@ impl<'a> Cluster<'a> {
 
     /// A vertex seen against the normal.
     fn place(&self, vertex: u16) -> (DVec2, u16) {
-        let u = self.normal.any_orthonormal_vector();
-        let v = self.normal.cross(u);
         let p = self.points[usize::from(vertex)].as_dvec3() - self.corner;
-        (DVec2::new(p.dot(u), p.dot(v)), vertex)
+        (self.axes.map(|axis| p.dot(axis)).into(), vertex)
     }
 
     /// The faces that are not members, but lie partly under the outline, where it cuts across a bay: those around a
