@@ -86,7 +86,7 @@ pub enum Left {
     OtherShape,
     /// The relative pose is not finite.
     NotFinite,
-    /// Neither shape is a hull, a cylinder, a cone or a convex shape of a user's own, and they are not two capsules.
+    /// Both shapes are sharp polytopes or balls, or a capsule meets a ball or a half-space: parry answers them as well.
     NoHull,
 }
 

@@ -61,10 +61,10 @@ const CURVED_GAPS: [(&str, f32); 4] = [
     ("50 mm deep", -0.05),
 ];
 
-/// Cylinders and cones, a metre high, in the same motion; and standing on the other shape, 1 mm deep, at rest or shaken.
+/// Cylinders, cones, capsules and rounded cuboids, a metre high, in the same motion; and standing on the other shape, 1 mm deep, at rest or shaken.
 pub fn curved() {
     let names = CURVED_GAPS.map(|(name, _)| name).join(" | ");
-    println!("### Cylinders and cones: ns, default → ours, ratio\n");
+    println!("### Cylinders, cones and rounded shapes: ns, default → ours, ratio\n");
     println!("| pair | {names} | at rest | shaken |\n|---|---|---|---|---|---|---|");
     for (name, shapes) in curved_pairs() {
         let moving = CURVED_GAPS.map(|(_, gap)| trajectory(&shapes, gap, 1.0));
@@ -83,15 +83,15 @@ pub fn curved() {
 }
 
 /// The second shape of each has a flat end, and the first one is a metre high, too.
-fn curved_pairs() -> [(&'static str, [SharedShape; 2]); 10] {
+fn curved_pairs() -> [(&'static str, [SharedShape; 2]); 14] {
     let cylinder = || SharedShape::cylinder(0.5, 0.4);
     let cone = || SharedShape::cone(0.5, 0.4);
     let cuboid = || SharedShape::cuboid(0.4, 0.5, 0.6);
-    let round_cuboid = SharedShape::round_cuboid(0.3, 0.4, 0.5, 0.1);
+    let round_cuboid = || SharedShape::round_cuboid(0.3, 0.4, 0.5, 0.1);
     let prism = || hulls::prism(24, 0.5, 0.5).expect("a prism");
     let corners = [[-2.0, 0.5, -2.0], [2.0, 0.5, -2.0], [0.0, 0.5, 2.0]];
     let [a, b, c] = corners.map(Vector::from);
-    let triangle = SharedShape::triangle(a, b, c);
+    let triangle = || SharedShape::triangle(a, b, c);
     let capsule = || SharedShape::capsule_y(0.2, 0.3);
     [
         ("cuboid, cylinder", [cuboid(), cylinder()]),
@@ -100,9 +100,13 @@ fn curved_pairs() -> [(&'static str, [SharedShape; 2]); 10] {
         ("cuboid, cone", [cuboid(), cone()]),
         ("cylinder, cone", [cylinder(), cone()]),
         ("prism of 24 sides, cone", [prism(), cone()]),
-        ("triangle, cylinder", [triangle, cylinder()]),
-        ("round cuboid, cylinder", [round_cuboid, cylinder()]),
+        ("triangle, cylinder", [triangle(), cylinder()]),
+        ("round cuboid, cylinder", [round_cuboid(), cylinder()]),
         ("capsule, cylinder", [capsule(), cylinder()]),
         ("capsule, cone", [capsule(), cone()]),
+        ("cuboid, capsule", [cuboid(), capsule()]),
+        ("triangle, capsule", [triangle(), capsule()]),
+        ("cuboid, round cuboid", [cuboid(), round_cuboid()]),
+        ("two round cuboids", [round_cuboid(), round_cuboid()]),
     ]
 }

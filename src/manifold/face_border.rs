@@ -42,17 +42,52 @@ impl<I: Iterator<Item = [DVec3; 2]> + Clone> FaceBorder<I> {
     }
 
     /// The same, with the part of the face that is nearest there.
+    ///
+    /// The line along the vector leaves the border at one place. Beside the face, this is between the place that the line
+    /// has in the plane of the plate and that of the point, so only sides with one of these beyond them are near it.
     pub fn reach_over(&self, point: DVec3, normal: DVec3) -> Reach {
+        let outward = self.outward;
+        let cos = outward.dot(normal);
+        if cos < EDGE_ON {
+            return self.reach_around(point, normal, |_| true);
+        }
+        let on_plate = (self.width + self.offset - outward.dot(point)) / cos;
+        let foot = point + normal * on_plate;
+        let is_within =
+            |p: DVec3, [from, to]: &[DVec3; 2]| outward.cross(to - from).dot(p - from) >= 0.0;
+        if self.sides.clone().all(|side| is_within(foot, &side)) {
+            return Reach {
+                height: on_plate.max(self.width),
+                nearest: NearestPart::Inside,
+            };
+        }
+        let is_near = |side: &_| !(is_within(foot, side) && is_within(point, side));
+        self.reach_around(point, normal, is_near)
+    }
+
+    /// How high the cylinders around some sides, and the balls around their ends, reach over a point.
+    fn reach_around(
+        &self,
+        point: DVec3,
+        normal: DVec3,
+        is_near: impl Fn(&[DVec3; 2]) -> bool,
+    ) -> Reach {
         let mut reach = Reach {
-            height: self.plate_over(point, normal),
+            height: 0.0,
             nearest: NearestPart::Inside,
         };
-        for (i, ends) in self.sides.clone().enumerate() {
+        let count = self.sides.clone().count();
+        // A segment has its only side in both directions.
+        let sides = self.sides.clone().take(if count == 2 { 1 } else { count });
+        for (i, ends) in sides.enumerate().filter(|(_, ends)| is_near(ends)) {
+            let next = if i + 1 < count { i + 1 } else { 0 };
             let ends = ends.map(|end| end - point);
-            let ball = last_crossing(ends[0], normal, self.width).unwrap_or(0.0);
+            let [first, last] =
+                ends.map(|end| last_crossing(end, normal, self.width).unwrap_or(0.0));
             let cylinder = self.cylinder_over_origin(ends, normal);
             for (height, nearest) in [
-                (ball, NearestPart::Corner(i)),
+                (first, NearestPart::Corner(i)),
+                (last, NearestPart::Corner(next)),
                 (cylinder, NearestPart::Side(i)),
             ] {
                 if height > reach.height {
@@ -62,21 +97,6 @@ impl<I: Iterator<Item = [DVec3; 2]> + Clone> FaceBorder<I> {
         }
         reach.height = reach.height.max(self.width);
         reach
-    }
-
-    /// How high the plate over the face reaches over a point; 0 if it is not over it.
-    fn plate_over(&self, point: DVec3, normal: DVec3) -> f64 {
-        let outward = self.outward;
-        let cos = outward.dot(normal);
-        if cos < EDGE_ON {
-            return 0.0;
-        }
-        let beneath = self.offset - outward.dot(point);
-        let height = (self.width + beneath) / cos;
-        let foot = point + normal * height - outward * self.width;
-        let mut sides = self.sides.clone();
-        let is_inside = sides.all(|[from, to]| outward.dot((to - from).cross(foot - from)) >= 0.0);
-        if is_inside { height } else { 0.0 }
     }
 
     /// How high the cylinder between two points reaches over the origin; 0 if it is not over it.

@@ -2,30 +2,29 @@
 
 use parry3d::math::{Pose, Real};
 use parry3d::query::{TrackedContact, Unsupported};
-use parry3d::shape::{Capsule as ParryCapsule, PackedFeatureId, Shape, ShapeType};
+use parry3d::shape::{Capsule as ParryCapsule, PackedFeatureId, Shape};
 
 use crate::manifold::capsules::{Capsule, CapsuleContact, CapsuleContacts, Place};
 use crate::map_pair::map_pair;
 use crate::parry::far_apart::are_far_apart;
-use crate::parry::manifold::ErasedManifold;
+use crate::parry::manifold::UpdateManifold;
 use crate::parry::pair::valid_pose;
 use crate::pose::RelativePose;
+use crate::stats::Stage;
 
-/// Updates the manifold of two capsules. Other shapes are not supported.
+/// Updates the manifold of two capsules.
 pub(crate) fn update_capsules(
-    pos12: &Pose,
+    update: &mut UpdateManifold<'_>,
     shapes: [&dyn Shape; 2],
-    prediction: Real,
-    manifold: &mut ErasedManifold<'_>,
 ) -> Result<(), Unsupported> {
-    let are_capsules = shapes
-        .iter()
-        .all(|shape| shape.shape_type() == ShapeType::Capsule);
-    if are_capsules && are_far_apart(pos12, shapes, prediction) {
+    let (pos12, prediction, manifold) = (update.pos12, update.prediction, &mut update.manifold);
+    if are_far_apart(pos12, shapes, prediction) {
         manifold.clear();
+        update.stats.record_free(Stage::BoundingSpheres);
         return Ok(());
     }
     let (pose, capsules) = pair_in_frame_1(pos12, shapes)?;
+    update.stats.record_free(Stage::Feature);
     let Some(contacts) = CapsuleContacts::new(capsules, prediction.into()) else {
         manifold.clear();
         return Ok(());

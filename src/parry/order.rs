@@ -37,6 +37,14 @@ impl PairOrder {
         self == Self::Reversed
     }
 
+    /// The other order.
+    pub fn reversed(self) -> Self {
+        match self {
+            Self::Given => Self::Reversed,
+            Self::Reversed => Self::Given,
+        }
+    }
+
     /// Converts from the order here to the caller's.
     #[inline]
     pub fn to_caller<T>(self, [a, b]: [T; 2]) -> [T; 2] {

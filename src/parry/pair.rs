@@ -12,8 +12,8 @@ use crate::pose::{RelativePose, ValidPose};
 use crate::support::{Cso, Polytope, Support};
 use crate::tolerance::MIN_DIRECTED_DISTANCE;
 
-/// A hull and another shape in the kernels' order. Frame 1 is that of the hull. In scene queries the first
-/// shape may be another convex shape `A`.
+/// A hull and another shape in the kernels' order. Frame 1 is that of the hull. In pairs without a hull the first shape is
+/// another convex shape `A`.
 pub(crate) struct Pair<'a, B, A = Hull> {
     pub hull: &'a A,
     pub other: &'a B,

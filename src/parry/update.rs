@@ -5,12 +5,12 @@ use parry3d::query::{ContactManifold, PersistentQueryDispatcher, Unsupported};
 
 use crate::map_pair::map_pair;
 use crate::parry::constraints::Constraints;
-use crate::parry::curved::update_without_hull;
 use crate::parry::hull_cache::epoch::Epoch;
 use crate::parry::manifold::{ErasedManifold, UpdateManifold};
 use crate::parry::operand::Operand;
 use crate::parry::recording::{PairView, Recorder, bare};
 use crate::parry::visit;
+use crate::parry::without_hull::update_without_hull;
 use crate::stats::{Left, SharedStats};
 
 /// What all updates of one call share.

@@ -43,6 +43,7 @@ mod patches;
 mod recording;
 mod round_pairs;
 mod rounded_contacts;
+mod rounded_pairs;
 mod scene_queries;
 mod sizes;
 mod still;

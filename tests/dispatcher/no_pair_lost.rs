@@ -3,10 +3,10 @@
 //! rapier throws the result of a narrow-phase query away, so a pair that the dispatcher does not support
 //! falls through the floor in silence, and parry's dispatcher passes itself, not us, to the routines for
 //! compounds, meshes, heightfields and voxels. So every shape meets every shape: the dispatcher supports
-//! exactly what parry supports, finds contacts wherever parry does, and passes every pair without a convex
-//! hull through untouched, to the last bit. Of compounds only the parts are: we find them ourselves, and
-//! their poses may be rounded otherwise. Two capsules are ours: they have the same depth, and more contacts.
-//! So are cylinders and cones.
+//! exactly what parry supports, finds contacts wherever parry does, and passes every pair of sharp polytopes and balls
+//! through untouched, to the last bit. Of compounds only the parts are: we find them ourselves, and their poses may be
+//! rounded otherwise. Two capsules are ours: they have the same depth, and more contacts. So are hulls, cylinders, cones
+//! and whatever has a rounded border.
 
 use std::fmt::Debug;
 
@@ -28,9 +28,19 @@ fn nudged(pose: &Pose) -> Pose {
     )
 }
 
-/// Contacts of cylinders and cones are ours.
+/// Contacts of cylinders, cones and rounded shapes are ours.
 fn is_curved(sample: &ShapeSample) -> bool {
-    sample.name.contains("cylinder") || sample.name.contains("cone")
+    let ours = ["cylinder", "cone", "round"];
+    ours.iter().any(|name| sample.name.contains(name))
+}
+
+/// A capsule is ours beside whatever is or has sharp polytopes.
+fn is_capsule_beside_polytopes(pair: [&ShapeSample; 2]) -> bool {
+    let [first, second] = pair.map(|sample| sample.name);
+    let closed_form = ["capsule", "ball", "half-space"];
+    [[first, second], [second, first]]
+        .iter()
+        .any(|[capsule, other]| *capsule == "capsule" && !closed_form.contains(other))
 }
 
 /// Every ordered pair of shapes, except those that make parry itself panic.
@@ -114,7 +124,8 @@ fn contacts_are_found_wherever_parry_finds_them() {
     for pair in pairs(&shape_samples()) {
         let is_ours = pair
             .iter()
-            .any(|sample| sample.has_hull || is_curved(sample));
+            .any(|sample| sample.has_hull || is_curved(sample))
+            || is_capsule_beside_polytopes(pair);
         // All distances are among them: there are eight. What is passed on needs fewer poses.
         for pose in poses().into_iter().step_by(if is_ours { 5 } else { 7 }) {
             let dispatcher = IsaGjkDispatcher::default();

@@ -187,17 +187,23 @@ fn a_wheel_rolls_over_a_fine_mesh_as_over_a_floor() {
 /// A triangle beside the lowest line is nearest to the side of the cylinder, and all corners of a triangle are as
 /// low as each other.
 #[test]
-fn a_cylinder_rolls_over_a_fine_mesh_as_over_a_floor() {
+fn round_bodies_roll_over_a_fine_mesh_as_over_a_floor() {
     let fine = flat_mesh(Vector::new(-1.0, 0.0, -1.5), 6.0, 30);
-    let wheel = (&SharedShape::cylinder(0.1, 0.3), Vector::X * (0.5 * PI));
-    for place in [0.0, 0.05, 0.13] {
-        let start = (Vector::new(place, 0.3, 0.013), 2.0, -2.0 / 0.3);
-        let Ride {
-            hop, left, aside, ..
-        } = ride_turned(&fine, wheel, start, 0.8, 120);
-        assert!(hop < 2e-3, "from {place}: hop {hop}");
-        assert!(left > 0.97, "from {place}: speed {left}");
-        assert!(aside < 0.1, "from {place}: aside {aside}");
+    let lying = Vector::X * (0.5 * PI);
+    for (wheel, least) in [
+        (SharedShape::cylinder(0.1, 0.3), 0.97),
+        (SharedShape::capsule_y(0.1, 0.3), 0.99),
+    ] {
+        let kind = wheel.shape_type();
+        for place in [0.0, 0.05, 0.13] {
+            let start = (Vector::new(place, 0.3, 0.013), 2.0, -2.0 / 0.3);
+            let Ride {
+                hop, left, aside, ..
+            } = ride_turned(&fine, (&wheel, lying), start, 0.8, 120);
+            assert!(hop < 2e-3, "{kind:?} from {place}: hop {hop}");
+            assert!(left > least, "{kind:?} from {place}: speed {left}");
+            assert!(aside < 0.1, "{kind:?} from {place}: aside {aside}");
+        }
     }
 }
 

@@ -17,7 +17,7 @@ use parry3d::shape::Shape;
 
 use super::spread::{PartContact, Spread};
 use crate::manifold::MAX_POINTS;
-use crate::parry::curved::is_hull_or_curved;
+use crate::parry::without_hull::makes_pair_ours;
 use crate::tuning::{ALL_LEVEL, BEARING_WIDTH, ONE_DEPTH, ONE_PLANE_COS, RISE};
 
 /// With more planes than these, contacts in the others stay as they are.
@@ -205,19 +205,19 @@ fn greatest(
     greatest.map(|(contact, _)| contact)
 }
 
-/// Whether one of the two parts is a hull, a cylinder or a cone.
+/// Whether one of the two parts is a hull, curved or rounded.
 fn is_ours<M, C>([s1, s2]: [&dyn Shape; 2], manifold: &ContactManifold<M, C>) -> bool {
     is_part_ours(s1, manifold.subshape1) || is_part_ours(s2, manifold.subshape2)
 }
 
 fn is_part_ours(shape: &dyn Shape, part: u32) -> bool {
     let Some(compound) = shape.as_compound() else {
-        return is_hull_or_curved(shape);
+        return makes_pair_ours(shape);
     };
     let part = usize::try_from(part)
         .ok()
         .and_then(|part| compound.shapes().get(part));
-    part.is_some_and(|(_, part)| is_hull_or_curved(&**part))
+    part.is_some_and(|(_, part)| makes_pair_ours(&**part))
 }
 
 /// The normal in the frame of the first shape.

@@ -1,4 +1,4 @@
-//! The contacts of a hull and another polytope.
+//! The contacts of two polytopes.
 
 use glam::Vec3;
 use parry3d::math::Pose;
@@ -6,7 +6,6 @@ use parry3d::math::Pose;
 use super::kernel_manifold::KernelManifold;
 use super::normals::Normals;
 use super::own_contacts::OwnCheck;
-use crate::hull::Hull;
 use crate::manifold::{self, ClipScratch, Contacts};
 use crate::map_pair::map_pair;
 use crate::parry::constraints::{ConstrainedPair, Constraints, Corrected};
@@ -15,8 +14,8 @@ use crate::query::{self, LastContacts, Proximity};
 use crate::support::{Cso, Polytope};
 use crate::tuning::ABSURD_DEPTH;
 
-pub(super) struct PolytopeContacts<'a, B> {
-    pub cso: &'a Cso<'a, Hull, B>,
+pub(super) struct PolytopeContacts<'a, A, B> {
+    pub cso: &'a Cso<'a, A, B>,
     pub max_distance: f64,
     /// In the caller's order, as `pos12`.
     pub constraints: &'a [Constraints<'a>; 2],
@@ -25,7 +24,7 @@ pub(super) struct PolytopeContacts<'a, B> {
     pub still_cache: &'a mut StillCache,
 }
 
-impl<B: Polytope> PolytopeContacts<'_, B> {
+impl<A: Polytope, B: Polytope> PolytopeContacts<'_, A, B> {
     /// Whether nothing constrains the normals.
     #[inline]
     pub fn is_free(&self) -> bool {
@@ -128,7 +127,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
 
     fn along_corrected(
         &mut self,
-        pair: &ConstrainedPair<'_, '_, Hull, B>,
+        pair: &ConstrainedPair<'_, '_, A, B>,
         near: &Proximity,
         normals: &Normals,
         corrected: &Corrected,
@@ -149,7 +148,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
 
     fn along(
         &mut self,
-        pair: &ConstrainedPair<'_, '_, Hull, B>,
+        pair: &ConstrainedPair<'_, '_, A, B>,
         near: &Proximity,
         corrected: &Corrected,
     ) -> Option<([Vec3; 2], Contacts)> {
@@ -163,7 +162,7 @@ impl<B: Polytope> PolytopeContacts<'_, B> {
     }
 }
 
-impl<B: Polytope> ConstrainedPair<'_, '_, Hull, B> {
+impl<A: Polytope, B: Polytope> ConstrainedPair<'_, '_, A, B> {
     /// The signed distance of the shapes with their borders.
     fn least(&self, near: &Proximity) -> f64 {
         near.signed_distance - self.border
@@ -171,8 +170,8 @@ impl<B: Polytope> ConstrainedPair<'_, '_, Hull, B> {
 }
 
 /// Writes contacts along normals that are not the query's.
-fn write_corrected<B: Polytope>(
-    cso: &Cso<'_, Hull, B>,
+fn write_corrected<A: Polytope, B: Polytope>(
+    cso: &Cso<'_, A, B>,
     manifold: &mut KernelManifold<'_, '_>,
     normals: [Vec3; 2],
     mut contacts: Contacts,

@@ -14,11 +14,11 @@ use crate::support::{Cso, Polytope, Support};
 
 /// Brings a manifold up to date. It holds only references: most pairs are apart, and copies that only contacts
 /// need would cost them more than the rest.
-pub(super) struct ManifoldSink<'a, 'm, B> {
+pub(super) struct ManifoldSink<'a, 'm, A, B> {
     manifold: &'a mut ErasedManifold<'m>,
-    pair: &'a Pair<'a, B>,
+    pair: &'a Pair<'a, B, A>,
     frame: AxisFrame<'a>,
-    contacts: PolytopeContacts<'a, B>,
+    contacts: PolytopeContacts<'a, A, B>,
     /// The contacts of the manifold. They are read when they are first needed.
     last: &'a mut Option<LastContacts>,
     /// The same, if they may stay as they are.
@@ -28,14 +28,14 @@ pub(super) struct ManifoldSink<'a, 'm, B> {
     still_apart: Option<f64>,
 }
 
-impl<'a, 'm, B: Polytope> ManifoldSink<'a, 'm, B> {
+impl<'a, 'm, A: Polytope, B: Polytope> ManifoldSink<'a, 'm, A, B> {
     /// A sink for a manifold. `present` are its contacts, as far as they are read.
     #[inline(always)]
     pub fn new(
         manifold: &'a mut ErasedManifold<'m>,
-        pair: &'a Pair<'a, B>,
+        pair: &'a Pair<'a, B, A>,
         frame: AxisFrame<'a>,
-        contacts: PolytopeContacts<'a, B>,
+        contacts: PolytopeContacts<'a, A, B>,
         present: &'a mut PresentContacts,
     ) -> Self {
         Self {
@@ -80,7 +80,7 @@ impl<'a, 'm, B: Polytope> ManifoldSink<'a, 'm, B> {
 }
 
 // perf: in calls the answers would go through memory, which pairs that are apart notice.
-impl<B: Polytope> Sink for ManifoldSink<'_, '_, B> {
+impl<A: Polytope, B: Polytope> Sink for ManifoldSink<'_, '_, A, B> {
     #[inline(always)]
     fn memory(&mut self) -> PairMemory {
         let manifold = KernelManifold::new(self.manifold, self.pair, self.frame);

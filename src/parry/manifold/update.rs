@@ -12,7 +12,6 @@ use super::polytopes::PolytopeContacts;
 use super::sink::ManifoldSink;
 use super::still::{PresentContacts, is_settled};
 use crate::curved::SurfacePieces;
-use crate::hull::Hull;
 use crate::parry::apart_cache::ApartPair;
 use crate::parry::constraints::Constraints;
 use crate::parry::convert::HalfSpace;
@@ -40,32 +39,13 @@ impl PairVisitor for UpdateManifold<'_> {
     /// Fails if the pair is not finite.
     type Answer = ();
 
-    // perf: in a call the pair would go through memory, which small queries notice.
-    #[inline(always)]
+    #[inline]
     fn visit<B: Polytope>(
         &mut self,
         pair: &Pair<'_, B>,
         workspace: &mut Workspace,
     ) -> Result<(), Unsupported> {
-        let max_distance = pair.core_distance(self.prediction, pair.size());
-        if let Some(apart) = self.apart_pair(pair)
-            && workspace.apart_cache.proves(&apart, max_distance)
-        {
-            self.stats.record_free(apart.stage());
-            return Ok(());
-        }
-        let pose = pair.pose(valid_pose(self.pos12)?);
-        let cso = pair.cso(&pose);
-        let mut present = PresentContacts::default();
-        let still_pair = |rotation, key| StillPair::of(&cso, rotation, key);
-        let at = (&pose, max_distance);
-        if self.hold_if_proved(pair, at, &mut present, &workspace.still_cache, still_pair) {
-            return Ok(());
-        }
-        let mut cost = Cost::default();
-        let stage = self.query(pair, &cso, max_distance, &mut present, workspace, &mut cost)?;
-        self.stats.record(stage, &cost);
-        Ok(())
+        self.update_polytopes(pair, workspace)
     }
 
     fn visit_half_space(
@@ -113,6 +93,35 @@ impl PairVisitor for UpdateManifold<'_> {
 }
 
 impl<'a> UpdateManifold<'a> {
+    /// For two polytopes. Fails if the pair is not finite.
+    // perf: in a call the pair would go through memory, which small queries notice.
+    #[inline(always)]
+    pub fn update_polytopes<A: Polytope, B: Polytope>(
+        &mut self,
+        pair: &Pair<'_, B, A>,
+        workspace: &mut Workspace,
+    ) -> Result<(), Unsupported> {
+        let max_distance = pair.core_distance(self.prediction, pair.size());
+        if let Some(apart) = self.apart_pair(pair)
+            && workspace.apart_cache.proves(&apart, max_distance)
+        {
+            self.stats.record_free(apart.stage());
+            return Ok(());
+        }
+        let pose = pair.pose(valid_pose(self.pos12)?);
+        let cso = pair.cso(&pose);
+        let mut present = PresentContacts::default();
+        let still_pair = |rotation, key| StillPair::of(&cso, rotation, key);
+        let at = (&pose, max_distance);
+        if self.hold_if_proved(pair, at, &mut present, &workspace.still_cache, still_pair) {
+            return Ok(());
+        }
+        let mut cost = Cost::default();
+        let stage = self.query(pair, &cso, max_distance, &mut present, workspace, &mut cost)?;
+        self.stats.record(stage, &cost);
+        Ok(())
+    }
+
     /// Only measures the contacts of a pair at rest anew, if that is proved to be enough. Returns whether it is.
     ///
     /// If contacts may stay as they are, it reads them into `present`: a return value would be copied even where there are
@@ -149,10 +158,10 @@ impl<'a> UpdateManifold<'a> {
 
     /// Runs the query. If the shapes are still apart along the manifold's axis, stores the proof.
     #[inline]
-    fn query<B: Polytope>(
+    fn query<A: Polytope, B: Polytope>(
         &mut self,
-        pair: &Pair<'_, B>,
-        cso: &Cso<'_, Hull, B>,
+        pair: &Pair<'_, B, A>,
+        cso: &Cso<'_, A, B>,
         max_distance: f64,
         present: &mut PresentContacts,
         workspace: &mut Workspace,
@@ -185,9 +194,9 @@ impl<'a> UpdateManifold<'a> {
         Ok(stage)
     }
 
-    /// The key of a proof that two hulls are apart, if the manifold has an axis that separates them.
+    /// The key of a proof that two shapes are apart, if the manifold has an axis that separates them.
     #[inline]
-    fn apart_pair<B: Support>(&self, pair: &Pair<'_, B>) -> Option<ApartPair<'a>> {
+    fn apart_pair<A: Support, B: Support>(&self, pair: &Pair<'_, B, A>) -> Option<ApartPair<'a>> {
         let is_empty = self.manifold.is_empty();
         is_empty.then_some(ApartPair {
             key: self.manifold.key(),

@@ -1,13 +1,15 @@
-//! Pairs without a hull: cylinders, cones and shapes of a user's own with other shapes, and two capsules.
+//! Pairs without a hull: cylinders, cones and shapes of a user's own with other shapes, capsules and rounded polytopes
+//! with each other and with sharp ones.
 
 use parry3d::math::Real;
 use parry3d::query::Unsupported;
 use parry3d::shape::{HalfSpace as ParryHalfSpace, Shape, ShapeType};
 
 use crate::curved::SurfacePieces;
-use crate::parry::balls::update_ball;
+use crate::map_pair::map_pair;
 use crate::parry::capsules::update_capsules;
 use crate::parry::convert::{self, Core, HalfSpace};
+use crate::parry::core_pair::CorePair;
 use crate::parry::custom::has_support_map;
 use crate::parry::far_apart::are_far_apart;
 use crate::parry::manifold::UpdateManifold;
@@ -15,7 +17,6 @@ use crate::parry::operand::is_hull;
 use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
 use crate::parry::workspace::ThreadWorkspace;
-use crate::primitive::Revolved;
 use crate::stats::Stage;
 
 /// Whether a shape is a cylinder or a cone, or may be curved since it is a user's own.
@@ -26,9 +27,15 @@ fn is_curved(shape: &dyn Shape) -> bool {
         || kind == Custom && has_support_map(shape)
 }
 
-/// Whether a shape is a hull or may be curved: those of which one makes a pair ours.
-pub(crate) fn is_hull_or_curved(shape: &dyn Shape) -> bool {
-    is_hull(shape) || is_curved(shape)
+/// Whether a shape is a hull, curved or rounded: those whose pairs with parts of a mesh are ours.
+pub(crate) fn makes_pair_ours(shape: &dyn Shape) -> bool {
+    is_hull(shape) || is_curved(shape) || is_rounded(shape)
+}
+
+/// Whether a shape other than a hull is a polytope with a rounded border.
+fn is_rounded(shape: &dyn Shape) -> bool {
+    use ShapeType::{Capsule, RoundCuboid, RoundTriangle};
+    matches!(shape.shape_type(), Capsule | RoundCuboid | RoundTriangle)
 }
 
 /// Brings a manifold up to date; pairs of other shapes are not supported.
@@ -36,19 +43,21 @@ pub(crate) fn update_without_hull(
     shapes: [&dyn Shape; 2],
     update: &mut UpdateManifold<'_>,
 ) -> Result<(), Unsupported> {
+    use ShapeType::{Ball, Capsule, HalfSpace};
     // The curved shape comes second in the kernels.
-    match PairOrder::with_second(shapes.map(is_curved)) {
-        Some(order) => update_curved(order, shapes, update),
-        None => update_capsules(
-            update.pos12,
-            shapes,
-            update.prediction,
-            &mut update.manifold,
-        ),
+    if let Some(order) = PairOrder::with_second(shapes.map(is_curved)) {
+        return update_cores(order, shapes, update);
+    }
+    let order = PairOrder::with_second(shapes.map(is_rounded)).ok_or(Unsupported)?;
+    match map_pair(shapes, |shape| shape.shape_type()) {
+        [Capsule, Capsule] => update_capsules(update, shapes),
+        // Closed forms of parry's.
+        [Capsule, Ball | HalfSpace] | [Ball | HalfSpace, Capsule] => Err(Unsupported),
+        _ => update_cores(order, shapes, update),
     }
 }
 
-fn update_curved(
+fn update_cores(
     order: PairOrder,
     shapes: [&dyn Shape; 2],
     update: &mut UpdateManifold<'_>,
@@ -68,17 +77,12 @@ fn update_curved(
     let (Some((first, border_1)), Some((second, border_2))) = (&first, &second) else {
         return Err(Unsupported);
     };
-    let mut pair = PairUpdate {
+    let mut pair = CorePair {
         border_radii: [*border_1, *border_2].map(f64::from),
         order,
         update,
     };
-    match second {
-        Core::Cylinder(second) => pair.with(first, second),
-        Core::Cone(second) => pair.with(first, second),
-        Core::Custom(second) => pair.with_custom(first, second),
-        _ => Err(Unsupported),
-    }
+    pair.update(first, second)
 }
 
 /// Parry's routine is exact for cylinders and cones without a border.
@@ -94,6 +98,12 @@ fn update_on_half_space(
             on_half_space(order, half_space, (&solid, border), update)
         }
         Some((Core::Cone(solid), border)) if border > 0.0 => {
+            on_half_space(order, half_space, (&solid, border), update)
+        }
+        Some((Core::Cuboid(solid), border)) => {
+            on_half_space(order, half_space, (&solid, border), update)
+        }
+        Some((Core::Triangle(solid), border)) => {
             on_half_space(order, half_space, (&solid, border), update)
         }
         Some((Core::Custom(solid), border)) if !update.leaves_custom => {
@@ -116,56 +126,4 @@ fn on_half_space(
         order,
     };
     ThreadWorkspace::with(|thread| update.update_on_plane(&pair, &mut thread.workspace))
-}
-
-/// The rest of an update, for cores whose types are known.
-struct PairUpdate<'u, 'a> {
-    border_radii: [f64; 2],
-    order: PairOrder,
-    update: &'u mut UpdateManifold<'a>,
-}
-
-impl PairUpdate<'_, '_> {
-    fn with(
-        &mut self,
-        first: &Core,
-        second: &(impl SurfacePieces + Revolved),
-    ) -> Result<(), Unsupported> {
-        match first {
-            Core::Ball(_) => update_ball(second, self.border_radii, self.order, self.update),
-            Core::Segment(first) => self.with_both(first, second),
-            Core::Triangle(first) => self.with_both(first, second),
-            Core::Cuboid(first) => self.with_both(first, second),
-            Core::Cylinder(first) => self.with_both(first, second),
-            Core::Cone(first) => self.with_both(first, second),
-            Core::Custom(_) => self.with_custom(first, second),
-        }
-    }
-
-    /// One of the shapes is a user's own.
-    #[cold]
-    fn with_custom(
-        &mut self,
-        first: &Core<'_>,
-        second: &impl SurfacePieces,
-    ) -> Result<(), Unsupported> {
-        if self.update.leaves_custom {
-            return Err(Unsupported);
-        }
-        self.with_both(first, second)
-    }
-
-    fn with_both(
-        &mut self,
-        first: &impl SurfacePieces,
-        second: &impl SurfacePieces,
-    ) -> Result<(), Unsupported> {
-        let pair = Pair {
-            hull: first,
-            other: second,
-            border_radii: self.border_radii,
-            order: self.order,
-        };
-        ThreadWorkspace::with(|thread| self.update.update_curved(&pair, &mut thread.workspace))
-    }
 }
