@@ -86,7 +86,7 @@ pub enum Left {
     OtherShape,
     /// The relative pose is not finite.
     NotFinite,
-    /// Both shapes are sharp polytopes or balls, or a capsule meets a ball or a half-space: parry answers them as well.
+    /// Sharp polytopes or balls meet (but cuboids and triangles), or a capsule and a ball or half-space: parry's are as good.
     NoHull,
 }
 

@@ -28,7 +28,7 @@ use crate::stats::{SharedStats, Stats};
 ///
 /// | Query | Pairs that it answers itself, in either order |
 /// |---|---|
-/// | contact manifolds | a hull with a hull, cuboid, triangle, ball, capsule, segment or half-space; a cylinder or cone with a hull, cuboid, triangle, ball, capsule, segment, cylinder or cone, and with a half-space if it is rounded; a capsule, or a rounded cuboid or triangle, with a cuboid, triangle, segment or another of these; a rounded cuboid or triangle with a ball or half-space; a shape of your own with all of these |
+/// | contact manifolds | a hull with a hull, cuboid, triangle, ball, capsule, segment or half-space; a cylinder or cone with a hull, cuboid, triangle, ball, capsule, segment, cylinder or cone, and with a half-space if it is rounded; a cuboid with a triangle; a capsule, or a rounded cuboid or triangle, with a cuboid, triangle, segment or another of these; a rounded cuboid or triangle with a ball or half-space; a shape of your own with all of these |
 /// | `distance`, `closest_points`, `contact`, `intersection_test` | all convex shapes, but for half-spaces without a hull, and balls with shapes that are neither rounded nor hulls nor your own (`contact` knows those with cylinders and cones) |
 /// | `cast_shapes`, `cast_shapes_nonlinear` | all convex shapes but half-spaces |
 ///

@@ -27,9 +27,14 @@ fn is_curved(shape: &dyn Shape) -> bool {
         || kind == Custom && has_support_map(shape)
 }
 
-/// Whether a shape is a hull, curved or rounded: those whose pairs with parts of a mesh are ours.
+/// Whether a shape is a hull, curved or rounded: those whose pairs with parts of other shapes are ours.
 pub(crate) fn makes_pair_ours(shape: &dyn Shape) -> bool {
     is_hull(shape) || is_curved(shape) || is_rounded(shape)
+}
+
+/// The same for pairs with triangles: on meshes the default's cuboids rarely rest.
+pub(crate) fn makes_pair_with_triangle_ours(shape: &dyn Shape) -> bool {
+    shape.shape_type() == ShapeType::Cuboid || makes_pair_ours(shape)
 }
 
 /// Whether a shape other than a hull is a polytope with a rounded border.
@@ -43,13 +48,18 @@ pub(crate) fn update_without_hull(
     shapes: [&dyn Shape; 2],
     update: &mut UpdateManifold<'_>,
 ) -> Result<(), Unsupported> {
-    use ShapeType::{Ball, Capsule, HalfSpace};
+    use ShapeType::{Ball, Capsule, Cuboid, HalfSpace, Triangle};
     // The curved shape comes second in the kernels.
     if let Some(order) = PairOrder::with_second(shapes.map(is_curved)) {
         return update_cores(order, shapes, update);
     }
-    let order = PairOrder::with_second(shapes.map(is_rounded)).ok_or(Unsupported)?;
-    match map_pair(shapes, |shape| shape.shape_type()) {
+    let kinds = map_pair(shapes, |shape| shape.shape_type());
+    let is_second = match kinds {
+        [Triangle, Cuboid] | [Cuboid, Triangle] => kinds.map(|kind| kind == Cuboid),
+        _ => shapes.map(is_rounded),
+    };
+    let order = PairOrder::with_second(is_second).ok_or(Unsupported)?;
+    match kinds {
         [Capsule, Capsule] => update_capsules(update, shapes),
         // Closed forms of parry's.
         [Capsule, Ball | HalfSpace] | [Ball | HalfSpace, Capsule] => Err(Unsupported),

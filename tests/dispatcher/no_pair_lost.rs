@@ -3,8 +3,8 @@
 //! rapier throws the result of a narrow-phase query away, so a pair that the dispatcher does not support
 //! falls through the floor in silence, and parry's dispatcher passes itself, not us, to the routines for
 //! compounds, meshes, heightfields and voxels. So every shape meets every shape: the dispatcher supports
-//! exactly what parry supports, finds contacts wherever parry does, and passes every pair of sharp polytopes and balls
-//! through untouched, to the last bit. Of compounds only the parts are: we find them ourselves, and their poses may be
+//! exactly what parry supports, finds contacts wherever parry does, and passes every pair of balls and sharp polytopes
+//! through untouched, to the last bit, but for cuboids on triangles. Of compounds only the parts are: we find them ourselves, and their poses may be
 //! rounded otherwise. Two capsules are ours: they have the same depth, and more contacts. So are hulls, cylinders, cones
 //! and whatever has a rounded border.
 
@@ -41,6 +41,13 @@ fn is_capsule_beside_polytopes(pair: [&ShapeSample; 2]) -> bool {
     [[first, second], [second, first]]
         .iter()
         .any(|[capsule, other]| *capsule == "capsule" && !closed_form.contains(other))
+}
+
+/// What consists of cuboids is ours beside whatever consists of triangles.
+fn are_cuboids_on_triangles(pair: [&ShapeSample; 2]) -> bool {
+    let names = pair.map(|sample| sample.name);
+    let is_any = |kinds: &[&str]| names.iter().any(|name| kinds.contains(name));
+    is_any(&["cuboid", "voxels", "compound"]) && is_any(&["triangle", "trimesh", "heightfield"])
 }
 
 /// Every ordered pair of shapes, except those that make parry itself panic.
@@ -125,7 +132,8 @@ fn contacts_are_found_wherever_parry_finds_them() {
         let is_ours = pair
             .iter()
             .any(|sample| sample.has_hull || is_curved(sample))
-            || is_capsule_beside_polytopes(pair);
+            || is_capsule_beside_polytopes(pair)
+            || are_cuboids_on_triangles(pair);
         // All distances are among them: there are eight. What is passed on needs fewer poses.
         for pose in poses().into_iter().step_by(if is_ours { 5 } else { 7 }) {
             let dispatcher = IsaGjkDispatcher::default();

@@ -12,6 +12,9 @@ const PROMISE: f64 = 1e-5;
 
 const BORDER: Real = 0.07;
 
+/// As shares of the smaller diameter.
+const GAPS: [f64; 7] = [0.05, 0.005, 1e-6, -1e-6, -0.01, -0.05, -0.2];
+
 fn cuboid(rng: &mut Rng, border: Real) -> Body {
     let half_extents = [(); 3].map(|()| rng.range(0.1, 0.8) as Real);
     Body::cuboid(Vector::from(half_extents), border)
@@ -30,13 +33,12 @@ fn capsule(rng: &mut Rng) -> Body {
 /// Each of the rounded bodies meets each partner in all ways.
 fn check(seed: u128, rounds: usize, partners: impl Fn(&mut Rng) -> Vec<Body>) {
     let mut rng = Rng::new(seed);
-    let gaps = [0.05, 0.005, 1e-6, -1e-6, -0.01, -0.05, -0.2];
     let mut tally = Tally::new(|faults| faults.are_within(PROMISE));
     for _ in 0..rounds {
         let rounded = [cuboid(&mut rng, BORDER), triangle(&mut rng, BORDER)];
         for partner in partners(&mut rng) {
             for body in &rounded {
-                tally.add(&mut rng, [&partner, body], &Meeting::ALL, &gaps);
+                tally.add(&mut rng, [&partner, body], &Meeting::ALL, &GAPS);
             }
         }
     }
@@ -63,14 +65,24 @@ fn rounded_and_sharp_shapes_are_right() {
 }
 
 #[test]
+fn cuboids_on_triangles_are_right() {
+    let mut rng = Rng::new(344);
+    let mut tally = Tally::new(|faults| faults.are_within(PROMISE));
+    for _ in 0..6 {
+        let bodies = [&triangle(&mut rng, 0.0), &cuboid(&mut rng, 0.0)];
+        tally.add(&mut rng, bodies, &Meeting::ALL, &GAPS);
+    }
+    tally.check();
+}
+
+#[test]
 fn capsules_are_right() {
     let mut rng = Rng::new(343);
-    let gaps = [0.05, 0.005, 1e-6, -1e-6, -0.01, -0.05, -0.2];
     let mut tally = Tally::new(|faults| faults.are_within(PROMISE));
     for _ in 0..3 {
         let capsule = capsule(&mut rng);
         for partner in [cuboid(&mut rng, 0.0), triangle(&mut rng, 0.0)] {
-            tally.add(&mut rng, [&partner, &capsule], &Meeting::ALL, &gaps);
+            tally.add(&mut rng, [&partner, &capsule], &Meeting::ALL, &GAPS);
         }
     }
     tally.check();

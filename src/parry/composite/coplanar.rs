@@ -13,11 +13,11 @@
 use glam::Vec2;
 use parry3d::math::{Real, Vector};
 use parry3d::query::{ContactManifold, TrackedContact};
-use parry3d::shape::Shape;
+use parry3d::shape::{Shape, ShapeType};
 
 use super::spread::{PartContact, Spread};
 use crate::manifold::MAX_POINTS;
-use crate::parry::without_hull::makes_pair_ours;
+use crate::parry::without_hull::{makes_pair_ours, makes_pair_with_triangle_ours};
 use crate::tuning::{ALL_LEVEL, BEARING_WIDTH, ONE_DEPTH, ONE_PLANE_COS, RISE};
 
 /// With more planes than these, contacts in the others stay as they are.
@@ -205,19 +205,24 @@ fn greatest(
     greatest.map(|(contact, _)| contact)
 }
 
-/// Whether one of the two parts is a hull, curved or rounded.
+/// Whether the contacts of two parts are ours.
 fn is_ours<M, C>([s1, s2]: [&dyn Shape; 2], manifold: &ContactManifold<M, C>) -> bool {
-    is_part_ours(s1, manifold.subshape1) || is_part_ours(s2, manifold.subshape2)
+    is_part_ours([s1, s2], manifold.subshape1) || is_part_ours([s2, s1], manifold.subshape2)
 }
 
-fn is_part_ours(shape: &dyn Shape, part: u32) -> bool {
+/// Whether a part of the first shape makes its pairs with parts of the second one ours.
+fn is_part_ours([shape, other]: [&dyn Shape; 2], part: u32) -> bool {
+    let makes_ours = match other.shape_type() {
+        ShapeType::TriMesh | ShapeType::HeightField => makes_pair_with_triangle_ours,
+        _ => makes_pair_ours,
+    };
     let Some(compound) = shape.as_compound() else {
-        return makes_pair_ours(shape);
+        return makes_ours(shape);
     };
     let part = usize::try_from(part)
         .ok()
         .and_then(|part| compound.shapes().get(part));
-    part.is_some_and(|(_, part)| makes_pair_ours(&**part))
+    part.is_some_and(|(_, part)| makes_ours(&**part))
 }
 
 /// The normal in the frame of the first shape.

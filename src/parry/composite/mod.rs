@@ -28,7 +28,7 @@ mod voxels;
 
 use crate::parry::order::PairOrder;
 use crate::parry::update::Updater;
-use crate::parry::without_hull::makes_pair_ours;
+use crate::parry::without_hull::makes_pair_with_triangle_ours;
 use mesh::Triangles;
 use sub_manifolds::{SubManifolds, empty_workspace};
 
@@ -134,7 +134,7 @@ pub(crate) fn reset_to_single<M: Default + Clone, C: Default + Copy>(
 }
 
 /// Takes apart a compound that meets another one or a convex shape, and a shape made of triangles that meets a
-/// compound, a hull, or a curved or rounded shape. `false` for other pairs.
+/// compound, a hull, a cuboid, or a curved or rounded shape. `false` for other pairs.
 ///
 /// We answer compounds whether or not they have a hull: to find out, each update would have to visit every
 /// part, however few of them are near.
@@ -166,7 +166,7 @@ where
             return true;
         }
         if let Some(triangles) = Triangles::of(first)
-            && (second.as_compound().is_some() || makes_pair_ours(second))
+            && (second.as_compound().is_some() || makes_pair_with_triangle_ours(second))
         {
             let sub_manifolds = begin(manifolds, workspace);
             mesh::triangles(sub_manifolds, pos12, triangles, second, order);
