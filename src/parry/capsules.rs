@@ -18,8 +18,7 @@ pub(crate) fn update_capsules(
     shapes: [&dyn Shape; 2],
 ) -> Result<(), Unsupported> {
     let (pos12, prediction, manifold) = (update.pos12, update.prediction, &mut update.manifold);
-    if are_far_apart(pos12, shapes, prediction) {
-        manifold.clear();
+    if manifold.is_empty() && are_far_apart(pos12, shapes, prediction) {
         update.stats.record_free(Stage::BoundingSpheres);
         return Ok(());
     }

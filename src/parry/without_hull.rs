@@ -76,7 +76,8 @@ fn update_cores(
     if let Some(half_space) = first.as_shape() {
         return update_on_half_space(order, half_space, second, update);
     }
-    if are_far_apart(update.pos12, shapes, update.prediction) {
+    // Of shapes in contact, few are.
+    if update.manifold.is_empty() && are_far_apart(update.pos12, shapes, update.prediction) {
         update.manifold.forget();
         update.stats.record_free(Stage::BoundingSpheres);
         return Ok(());
