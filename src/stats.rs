@@ -86,7 +86,7 @@ pub enum Left {
     OtherShape,
     /// The relative pose is not finite.
     NotFinite,
-    /// Sharp polytopes or balls meet (but cuboids and triangles), or a capsule and a ball or half-space: parry's are as good.
+    /// Other sharp polytopes or balls, or a capsule with a ball or half-space: parry's contacts are as good.
     NoHull,
 }
 

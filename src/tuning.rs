@@ -232,4 +232,4 @@ pub(crate) const CELLS_IN_BOX: f32 = 2.0;
 
 /// A cast is looked at once more if the shapes approach by less than this share of their velocity: then they may only
 /// graze the target distance. An edge that is passed a rounding too near shows less than 0.03.
-pub const MAY_GRAZE: f64 = 0.1;
+pub(crate) const MAY_GRAZE: f64 = 0.1;

@@ -6,7 +6,7 @@ use parry3d::shape::{Capsule as ParryCapsule, PackedFeatureId, Shape};
 
 use crate::manifold::capsules::{Capsule, CapsuleContact, CapsuleContacts, Place};
 use crate::map_pair::map_pair;
-use crate::parry::far_apart::are_far_apart;
+use crate::parry::far_apart::is_answered_by_reach;
 use crate::parry::manifold::UpdateManifold;
 use crate::parry::pair::valid_pose;
 use crate::pose::RelativePose;
@@ -17,14 +17,13 @@ pub(crate) fn update_capsules(
     update: &mut UpdateManifold<'_>,
     shapes: [&dyn Shape; 2],
 ) -> Result<(), Unsupported> {
-    let (pos12, prediction, manifold) = (update.pos12, update.prediction, &mut update.manifold);
-    if manifold.is_empty() && are_far_apart(pos12, shapes, prediction) {
-        update.stats.record_free(Stage::BoundingSpheres);
+    if is_answered_by_reach(shapes, update) {
         return Ok(());
     }
-    let (pose, capsules) = pair_in_frame_1(pos12, shapes)?;
+    let (pose, capsules) = pair_in_frame_1(update.pos12, shapes)?;
     update.stats.record_free(Stage::Feature);
-    let Some(contacts) = CapsuleContacts::new(capsules, prediction.into()) else {
+    let manifold = &mut update.manifold;
+    let Some(contacts) = CapsuleContacts::new(capsules, update.prediction.into()) else {
         manifold.clear();
         return Ok(());
     };

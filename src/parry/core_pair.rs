@@ -20,7 +20,7 @@ pub(crate) struct CorePair<'u, 'a> {
 }
 
 impl CorePair<'_, '_> {
-    /// Brings the manifold up to date. If one of the shapes is a cylinder or a cone, it comes second.
+    /// Brings the manifold up to date. A curved shape, or else a rounded one, comes second.
     pub fn update(&mut self, first: &Core, second: &Core) -> Result<(), Unsupported> {
         match second {
             Core::Cylinder(second) => self.of_solid(first, second),
@@ -74,7 +74,6 @@ impl CorePair<'_, '_> {
             }
             (first, Core::Segment(second)) => self.of_flat(first, second),
             (first, Core::Triangle(second)) => self.of_flat(first, second),
-            (Core::Triangle(first), Core::Ball(second)) => self.by_surfaces(first, second),
             _ => Err(Unsupported),
         }
     }

@@ -1,15 +1,28 @@
 //! Pairs whose distance from origin to origin shows that they are apart: most of those that the broad phase reports in
 //! a heap. Only what a shape of parry's tells is read, and nothing is converted for the kernels.
 
-use parry3d::math::{Pose, Real};
+use parry3d::math::{Pose, Real, Vector};
 use parry3d::shape::{Shape, ShapeType, TypedShape};
 
+use crate::parry::manifold::UpdateManifold;
 use crate::pose::is_nearly_unit;
+use crate::stats::Stage;
 use crate::tolerance::PROOF_MARGIN;
+
+/// Whether two shapes are seen to be far apart, which is counted as an answer.
+pub(crate) fn is_answered_by_reach(shapes: [&dyn Shape; 2], update: &UpdateManifold<'_>) -> bool {
+    // Of shapes in contact, few are far apart in the next step.
+    let is_answered =
+        update.manifold.is_empty() && are_far_apart(update.pos12, shapes, update.prediction);
+    if is_answered {
+        update.stats.record_free(Stage::BoundingSpheres);
+    }
+    is_answered
+}
 
 /// Whether two shapes are certainly farther apart than the prediction. `false` if one of them is of a kind whose reach
 /// is not known.
-pub(crate) fn are_far_apart(pos12: &Pose, shapes: [&dyn Shape; 2], prediction: Real) -> bool {
+fn are_far_apart(pos12: &Pose, shapes: [&dyn Shape; 2], prediction: Real) -> bool {
     let (Some(first), Some(second)) = (reach(shapes[0]), reach(shapes[1])) else {
         return false;
     };
@@ -27,41 +40,27 @@ fn reach(shape: &dyn Shape) -> Option<f64> {
     if shape.shape_type() == ShapeType::Custom {
         return None;
     }
-    let (squared, border) = match shape.as_typed_shape() {
-        TypedShape::Ball(ball) => (0.0, ball.radius),
+    let on_rim = |half_height: Real, radius: Real| Vector::new(radius, half_height, 0.0);
+    let (corner, border) = match shape.as_typed_shape() {
+        TypedShape::Ball(ball) => (Vector::ZERO, ball.radius),
         TypedShape::Capsule(capsule) => {
-            let ends = [capsule.segment.a, capsule.segment.b];
-            let [a, b] = ends.map(|end| end.as_dvec3().length_squared());
-            (a.max(b), capsule.radius)
+            let [a, b] = [capsule.segment.a, capsule.segment.b];
+            let [from_a, from_b] = [a, b].map(|end| end.as_dvec3().length_squared());
+            (if from_a > from_b { a } else { b }, capsule.radius)
         }
-        TypedShape::Cuboid(cuboid) => (cuboid.half_extents.as_dvec3().length_squared(), 0.0),
-        TypedShape::RoundCuboid(round) => {
-            let half_extents = round.inner_shape.half_extents.as_dvec3();
-            (half_extents.length_squared(), round.border_radius)
-        }
-        TypedShape::Cylinder(solid) => (squares(solid.half_height, solid.radius), 0.0),
-        TypedShape::Cone(solid) => (squares(solid.half_height, solid.radius), 0.0),
+        TypedShape::Cuboid(cuboid) => (cuboid.half_extents, 0.0),
+        TypedShape::RoundCuboid(round) => (round.inner_shape.half_extents, round.border_radius),
+        TypedShape::Cylinder(solid) => (on_rim(solid.half_height, solid.radius), 0.0),
+        TypedShape::Cone(solid) => (on_rim(solid.half_height, solid.radius), 0.0),
         TypedShape::RoundCylinder(round) => {
             let solid = &round.inner_shape;
-            (
-                squares(solid.half_height, solid.radius),
-                round.border_radius,
-            )
+            (on_rim(solid.half_height, solid.radius), round.border_radius)
         }
         TypedShape::RoundCone(round) => {
             let solid = &round.inner_shape;
-            (
-                squares(solid.half_height, solid.radius),
-                round.border_radius,
-            )
+            (on_rim(solid.half_height, solid.radius), round.border_radius)
         }
         _ => return None,
     };
-    Some(squared.sqrt() + f64::from(border))
-}
-
-#[inline]
-fn squares(a: Real, b: Real) -> f64 {
-    let [a, b] = [a, b].map(f64::from);
-    a * a + b * b
+    Some(corner.as_dvec3().length() + f64::from(border))
 }

@@ -11,13 +11,12 @@ use crate::parry::capsules::update_capsules;
 use crate::parry::convert::{self, Core, HalfSpace};
 use crate::parry::core_pair::CorePair;
 use crate::parry::custom::has_support_map;
-use crate::parry::far_apart::are_far_apart;
+use crate::parry::far_apart::is_answered_by_reach;
 use crate::parry::manifold::UpdateManifold;
 use crate::parry::operand::is_hull;
 use crate::parry::order::PairOrder;
 use crate::parry::pair::Pair;
 use crate::parry::workspace::ThreadWorkspace;
-use crate::stats::Stage;
 
 /// Whether a shape is a cylinder or a cone, or may be curved since it is a user's own.
 fn is_curved(shape: &dyn Shape) -> bool {
@@ -76,10 +75,8 @@ fn update_cores(
     if let Some(half_space) = first.as_shape() {
         return update_on_half_space(order, half_space, second, update);
     }
-    // Of shapes in contact, few are.
-    if update.manifold.is_empty() && are_far_apart(update.pos12, shapes, update.prediction) {
+    if is_answered_by_reach(shapes, update) {
         update.manifold.forget();
-        update.stats.record_free(Stage::BoundingSpheres);
         return Ok(());
     }
     // One by one: as parts of a pair they would be copied.

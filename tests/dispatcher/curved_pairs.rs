@@ -9,7 +9,8 @@ use testkit::memory::Memory;
 use testkit::pair::{FRAMES, PREDICTION, trajectory};
 use testkit::pose::ExactPose;
 
-use crate::tally::Tally;
+use crate::rounded_pairs::{capsule, triangle};
+use crate::tally::{GAPS, Tally};
 
 /// The promise, as a share of the smaller diameter.
 const PROMISE: f64 = 1e-5;
@@ -21,14 +22,14 @@ fn curved(rng: &mut Rng, border: f32) -> Vec<Body> {
 }
 
 fn partners(rng: &mut Rng, border: f32) -> Vec<Body> {
-    let corners = [0; 3].map(|_| rng.direction().as_vec3() * 0.8);
-    let ends = [0; 2].map(|_| rng.direction().as_vec3() * 0.6);
+    let triangle = triangle(rng, border);
+    let capsule = capsule(rng);
     let points: Vec<Vector> = (0..20).map(|_| rng.direction().as_vec3() * 0.7).collect();
     let mut bodies = curved(rng, border);
     bodies.extend([
         Body::cuboid(Vector::new(0.4, 0.3, 0.8), border),
-        Body::triangle(corners, border),
-        Body::capsule(ends, 0.2),
+        triangle,
+        capsule,
         Body::hull(&points, border).expect("a solid"),
         Body::ball(0.25),
         Body::half_space(Vector::Y),
@@ -38,12 +39,11 @@ fn partners(rng: &mut Rng, border: f32) -> Vec<Body> {
 
 fn check(border: f32, seed: u128) {
     let mut rng = Rng::new(seed);
-    let gaps = [0.05, 0.005, 1e-6, -1e-6, -0.01, -0.05, -0.2];
     let mut tally = Tally::new(|faults| faults.are_within(PROMISE));
     for _ in 0..2 {
         for first in curved(&mut rng, border) {
             for second in partners(&mut rng, border) {
-                tally.add(&mut rng, [&second, &first], &Meeting::ALL, &gaps);
+                tally.add(&mut rng, [&second, &first], &Meeting::ALL, &GAPS);
             }
         }
     }

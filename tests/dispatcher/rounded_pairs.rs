@@ -5,27 +5,24 @@ use parry3d::math::{Real, Vector};
 use testkit::curved::{Body, Meeting};
 use testkit::generate::Rng;
 
-use crate::tally::Tally;
+use crate::tally::{GAPS, Tally};
 
 /// The promise, as a share of the smaller diameter.
 const PROMISE: f64 = 1e-5;
 
 const BORDER: Real = 0.07;
 
-/// As shares of the smaller diameter.
-const GAPS: [f64; 7] = [0.05, 0.005, 1e-6, -1e-6, -0.01, -0.05, -0.2];
-
 fn cuboid(rng: &mut Rng, border: Real) -> Body {
     let half_extents = [(); 3].map(|()| rng.range(0.1, 0.8) as Real);
     Body::cuboid(Vector::from(half_extents), border)
 }
 
-fn triangle(rng: &mut Rng, border: Real) -> Body {
+pub fn triangle(rng: &mut Rng, border: Real) -> Body {
     let corners = [(); 3].map(|()| rng.direction().as_vec3() * 0.8);
     Body::triangle(corners, border)
 }
 
-fn capsule(rng: &mut Rng) -> Body {
+pub fn capsule(rng: &mut Rng) -> Body {
     let ends = [(); 2].map(|()| rng.direction().as_vec3() * 0.6);
     Body::capsule(ends, 0.2)
 }

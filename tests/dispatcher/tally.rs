@@ -7,6 +7,9 @@ use testkit::generate::Rng;
 use testkit::memory::{Manifold, Memory, cold_manifold};
 use testkit::pose::ExactPose;
 
+/// How far apart pairs are, as shares of the smaller diameter.
+pub const GAPS: [f64; 7] = [0.05, 0.005, 1e-6, -1e-6, -0.01, -0.05, -0.2];
+
 /// Of the pairs judged so far.
 pub struct Tally {
     /// What an answer must keep.
