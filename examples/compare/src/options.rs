@@ -8,7 +8,7 @@ use rapier3d::prelude::Real;
 
 use crate::measure::RunLength;
 use testkit::numbers::positive;
-use testkit::scenes::{CurvedScene, HullSource, Hulls, Scene, SceneParams};
+use testkit::scenes::{CurvedScene, Ground, HullSource, Hulls, Scene, SceneParams, Solid};
 
 /// How long a world is watched until its bodies sleep: most need two to six seconds.
 const SECONDS_UNTIL_ASLEEP: u32 = 12;
@@ -19,10 +19,19 @@ const SECONDS_UNTIL_ASLEEP: u32 = 12;
 #[command(name = "compare")]
 pub struct Options {
     /// What is in the world: drum, pile, stack, coins, wall, dominoes, spin, top, rolling, asleep,
-    /// cuboids, balls, mixed, compound, trimesh, heightfield, rocks, stones, dice, pebbles, cubes,
+    /// cuboids, balls, mixed, solids, compound, trimesh, heightfield, rocks, stones, dice, pebbles, cubes,
     /// plates, needles, pencils, rings, breach, rubble, grippers, shaken-grippers, reshaped or bursts
     #[arg(long, default_value_t = Scene::Drum)]
     pub scene: Scene,
+
+    /// Kinds of bodies in the scene solids, which take turns: ball, cuboid, rounded-cuboid, capsule,
+    /// cylinder, rounded-cylinder, log, coin, cone or hull [default: all of them]
+    #[arg(long, value_delimiter = ',')]
+    solids: Vec<Solid>,
+
+    /// What they fall on: floor, mesh, corrected-mesh (with FIX_INTERNAL_EDGES), heightfield or boxes (one compound)
+    #[arg(long, default_value = Ground::Floor.name())]
+    ground: Ground,
 
     /// The hulls: random, prism, box, real, or the path of an .obj file [default: random; stack,
     /// coins, spin and top have prisms; stack can have real ones that are flat below and above]
@@ -193,11 +202,19 @@ impl Options {
     /// What to build, of hulls with so many vertices.
     pub fn scene_params(&self, vertices: u32) -> Result<SceneParams, String> {
         let hulls = self.hull_source(vertices)?;
+        if self.scene != Scene::Solids && (!self.solids.is_empty() || self.ground != Ground::Floor)
+        {
+            return Err(
+                "--solids and --ground are for piles of solids: add --scene solids".to_owned(),
+            );
+        }
         let bodies = self.bodies.unwrap_or(self.scene.default_bodies());
         let params = SceneParams::new(hulls, bodies);
         Ok(SceneParams {
             distinct: self.distinct.unwrap_or(params.distinct),
             size: self.size,
+            solids: self.solids(),
+            ground: self.ground,
             friction: self.friction,
             hz: self.hz,
             seed: self.seed,
@@ -208,6 +225,14 @@ impl Options {
             can_sleep: self.sleep || self.until_asleep || self.scene == Scene::Asleep,
             ..params
         })
+    }
+
+    fn solids(&self) -> Vec<Solid> {
+        if self.solids.is_empty() {
+            Solid::ALL.to_vec()
+        } else {
+            self.solids.clone()
+        }
     }
 
     /// The scenes of `--curved`.

@@ -8,7 +8,7 @@ use serde::Serialize;
 use crate::measure::{BLOCK, Frame, Run, RunLength, Side, Times};
 use crate::verify::Verified;
 use testkit::quality::quantile;
-use testkit::scenes::{Hulls, Scene, SceneParams};
+use testkit::scenes::{Scene, SceneParams};
 
 /// Everything the table shows.
 #[derive(Serialize)]
@@ -69,10 +69,7 @@ impl Report {
         let hashes = |run: &Run| (run.default.pose_hash, run.ours.pose_hash);
         Self {
             scene: scene.name(),
-            hulls: match scene.hulls() {
-                Hulls::None => "no hulls".to_owned(),
-                _ => params.hulls.to_string(),
-            },
+            hulls: params.contents(scene),
             bodies: params.bodies,
             seed: params.seed,
             recycling: params.recycling,

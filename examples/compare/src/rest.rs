@@ -10,10 +10,14 @@ use serde::Serialize;
 
 use crate::measure;
 use testkit::quality::quantile;
-use testkit::scenes::{self, Hulls, Scene, SceneParams, World};
+use testkit::scenes::{self, Scene, SceneParams, World};
 
 /// Of so many bodies all but one must sleep.
 const ONE_AWAKE_OF: usize = 20;
+/// Later than this many times the default's frame of rest, and so many frames more, is late: two runs that begin within a
+/// rounding of each other differ by less.
+const LIMIT_FACTOR: f64 = 1.25;
+const LIMIT_FRAMES: f64 = 30.0;
 
 /// Runs of one scene from several seeds.
 #[derive(Serialize)]
@@ -33,6 +37,10 @@ pub struct Rest {
     pub runs: Vec<Run>,
     /// The median over the runs of how many times longer the default took for all steps.
     ratio: f64,
+    /// The same for the narrow phase.
+    narrow_phase_ratio: f64,
+    /// In how many runs ours rested no later than [`Run::keeps_limit`] allows.
+    kept: usize,
 }
 
 /// Both worlds from one seed.
@@ -54,6 +62,8 @@ pub struct Side {
     rest: Option<usize>,
     /// All steps of the run, in milliseconds.
     steps_ms: f64,
+    /// Of these, the narrow phase.
+    narrow_phase_ms: f64,
     /// How far the body that moved most came after it rested, in millimetres.
     drift_mm: Option<f64>,
     /// Bodies asleep at the end.
@@ -91,10 +101,7 @@ impl Rest {
             .collect::<Result<Vec<_>, _>>()?;
         Ok(Self {
             scene: scene.name(),
-            hulls: match scene.hulls() {
-                Hulls::None => "no hulls".to_owned(),
-                _ => params.hulls.to_string(),
-            },
+            hulls: params.contents(scene),
             bodies: params.bodies,
             size: params.size.or(scene.default_size()),
             friction: params.friction,
@@ -103,6 +110,11 @@ impl Rest {
             hull_shape: params.hull_shape,
             frames,
             ratio: quantile(runs.iter().map(|run| run.ratio).collect(), 0.5),
+            narrow_phase_ratio: {
+                let ratios = runs.iter().map(Run::narrow_phase_ratio);
+                quantile(ratios.collect(), 0.5)
+            },
+            kept: runs.iter().filter(|run| run.keeps_limit(frames)).count(),
             runs,
         })
     }
@@ -115,6 +127,16 @@ impl Rest {
             "{}: {} bodies, {}{size}",
             self.scene, self.bodies, self.hulls
         )
+    }
+
+    /// The mean frame of rest; runs that never rested count whole and are told.
+    fn mean_rest(&self, rest: fn(&Run) -> Option<usize>) -> String {
+        let frames = self.runs.iter().map(|run| rest(run).unwrap_or(self.frames));
+        let mean = frames.sum::<usize>() / self.runs.len();
+        match self.runs.iter().filter(|run| rest(run).is_none()).count() {
+            0 => format!("{mean} frames"),
+            never => format!("{mean} frames ({never} never)"),
+        }
     }
 
     /// Writes every frame of all runs, of both worlds side by side.
@@ -138,6 +160,17 @@ impl Rest {
 }
 
 impl Run {
+    /// Whether ours rested no later than 1.25 times the default's frame plus 30; who never rested counts as having
+    /// rested in the last frame.
+    fn keeps_limit(&self, frames: usize) -> bool {
+        let [default, ours] = [&self.default, &self.ours].map(|side| side.rest.unwrap_or(frames));
+        ours as f64 <= LIMIT_FACTOR * default as f64 + LIMIT_FRAMES
+    }
+
+    fn narrow_phase_ratio(&self) -> f64 {
+        self.default.narrow_phase_ms / self.ours.narrow_phase_ms
+    }
+
     fn new(
         scene: Scene,
         params: &SceneParams,
@@ -168,6 +201,7 @@ struct Watch {
     world: World,
     bodies: usize,
     frames: Vec<Frame>,
+    narrow_phase_ms: f64,
     /// Since when at most one of twenty is awake, and where the bodies were then.
     rest: Option<(usize, Vec<Vector>)>,
 }
@@ -178,6 +212,7 @@ impl Watch {
             bodies: world.dynamic_bodies().count(),
             world,
             frames: Vec::new(),
+            narrow_phase_ms: 0.0,
             rest: None,
         }
     }
@@ -187,6 +222,7 @@ impl Watch {
         let counters = &self.world.physics.physics_pipeline.counters;
         let awake = self.bodies - self.world.sleeping();
         let frame = self.frames.len();
+        self.narrow_phase_ms += counters.narrow_phase_time_ms();
         self.frames.push(Frame {
             step_ms: counters.step_time_ms(),
             awake,
@@ -215,6 +251,7 @@ impl Watch {
         Side {
             rest: self.rest.as_ref().map(|(frame, _)| *frame),
             steps_ms: self.frames.iter().map(|frame| frame.step_ms).sum(),
+            narrow_phase_ms: self.narrow_phase_ms,
             drift_mm: drift,
             asleep: self.world.sleeping(),
             frames: self.frames,
@@ -257,7 +294,20 @@ impl fmt::Display for Rest {
         for run in &self.runs {
             write!(f, "{run}")?;
         }
-        writeln!(f, "median ratio {:.2}", self.ratio)
+        let [default, ours] = [|run: &Run| run.default.rest, |run: &Run| run.ours.rest];
+        writeln!(
+            f,
+            "rest after {} by default and {} with isa-gjk in the mean; {} of {} runs keep the limit",
+            self.mean_rest(default),
+            self.mean_rest(ours),
+            self.kept,
+            self.runs.len()
+        )?;
+        writeln!(
+            f,
+            "median ratio of all steps {:.2}, of the narrow phase {:.2}",
+            self.ratio, self.narrow_phase_ratio
+        )
     }
 }
 

@@ -3,13 +3,15 @@
 use oorandom::Rand32;
 use rapier3d::prelude::*;
 
-use super::containers::WALL;
+use super::containers::{Ground, WALL};
 use super::filler::{Filler, GAP, reach, square_cell};
 use super::world::World;
-use super::{HullSource, Scene, SceneParams, containers, families, hulls, standing};
+use super::{HullSource, Scene, SceneParams, containers, families, hulls, solids, standing};
 
 /// Distance between the centres of neighbours at the start, in bounding diameters.
 const SPACING: Real = 1.1;
+/// Bodies along a side of a narrow pile over those of a cubic one.
+const HEAP_WIDTH: Real = 0.7;
 const TOWER: usize = 8;
 const COIN_TOWER: usize = 16;
 const COIN_HALF_HEIGHT: Real = 0.03;
@@ -53,7 +55,10 @@ pub fn fill(
         Scene::Spin => filler.spinning()?,
         Scene::Top => filler.tops(),
         Scene::Rolling => filler.rolling(),
-        Scene::Trimesh | Scene::Heightfield | Scene::Rubble => filler.bumpy(scene)?,
+        Scene::Trimesh => filler.spread_on(Ground::Mesh)?,
+        Scene::Heightfield => filler.spread_on(Ground::HeightField)?,
+        Scene::Rubble => filler.spread_on(Ground::Boxes)?,
+        Scene::Solids => filler.heap_on(params.ground)?,
         Scene::Breach => filler.breach(),
         Scene::Grippers | Scene::ShakenGrippers => filler.grippers(scene)?,
         Scene::Pile
@@ -71,7 +76,7 @@ pub fn fill(
         | Scene::Pencils
         | Scene::Rings
         | Scene::Reshaped
-        | Scene::Bursts => filler.pile(),
+        | Scene::Bursts => filler.pile()?,
     }
     Ok(())
 }
@@ -105,6 +110,7 @@ fn shapes(
                 ]
             })
             .collect(),
+        Scene::Solids => solids::make(&params.solids, params.bodies, random)?,
         Scene::Compound => {
             let hulls = hulls::make(&params.hulls, count, random)?;
             (0..hulls.len()).map(|i| pair_of_hulls(&hulls, i)).collect()
@@ -181,29 +187,36 @@ impl Filler<'_> {
         }
     }
 
-    fn pile(&mut self) {
-        let (side, half_width) = self.column();
-        containers::floor(self.world, half_width + 1.0);
-        self.drop_in(side, half_width, 0.0);
+    fn pile(&mut self) -> Result<(), String> {
+        let (side, half_width) = self.column(1.0);
+        self.drop_on(Ground::Floor, side, half_width)
     }
 
-    /// On a bumpy mesh or height field, or on a compound of boxes.
-    fn bumpy(&mut self, scene: Scene) -> Result<(), String> {
-        let (side, half_width) = self.column();
-        let (side, half_width) = (2 * side, 2.0 * half_width);
-        let cell = 1.5 * self.reach;
-        match scene {
-            Scene::Trimesh => containers::bumpy_mesh(self.world, half_width + WALL, cell)?,
-            Scene::Rubble => containers::bumpy_compound(self.world, half_width + WALL, cell),
-            _ => containers::bumpy_field(self.world, half_width + WALL, cell),
-        }
+    /// A pile on bumps, so wide that most bodies lie on them.
+    fn spread_on(&mut self, ground: Ground) -> Result<(), String> {
+        let (side, half_width) = self.column(1.0);
+        self.drop_on(ground, 2 * side, 2.0 * half_width)
+    }
+
+    /// A pile so narrow that most bodies lie on others, though most are smaller than the largest.
+    fn heap_on(&mut self, ground: Ground) -> Result<(), String> {
+        let (side, half_width) = self.column(HEAP_WIDTH);
+        self.drop_on(ground, side, half_width)
+    }
+
+    fn drop_on(&mut self, ground: Ground, side: usize, half_width: Real) -> Result<(), String> {
+        let cell = match ground {
+            Ground::Floor => 0.0,
+            _ => 1.5 * self.reach,
+        };
+        ground.insert(self.world, half_width + WALL, cell)?;
         self.drop_in(side, half_width, cell);
         Ok(())
     }
 
-    /// Bodies along a side of a cubic column, and half the width of the box around it.
-    fn column(&self) -> (usize, Real) {
-        let side = (self.bodies as Real).cbrt().ceil() as usize;
+    /// Bodies along a side of a column so many times as wide as a cubic one, and half the width of the box around it.
+    fn column(&self, width: Real) -> (usize, Real) {
+        let side = (width * (self.bodies as Real).cbrt()).ceil() as usize;
         let half_width = (side as Real + 0.5) * SPACING * self.reach;
         (side, half_width)
     }

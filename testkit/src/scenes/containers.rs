@@ -1,6 +1,7 @@
 //! Containers for the bodies of a scene.
 
 use std::f32::consts::PI;
+use std::str::FromStr;
 
 use parry3d::utils::Array2;
 use rapier3d::prelude::*;
@@ -68,8 +69,75 @@ pub fn walls(world: &mut World, half_width: Real, height: Real) {
     }
 }
 
-/// A square of bumpy ground around height zero, in triangles about as large as `cell`.
-pub fn bumpy_mesh(world: &mut World, half_width: Real, cell: Real) -> Result<(), String> {
+/// What the bodies of a pile fall on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ground {
+    /// A level cuboid.
+    #[default]
+    Floor,
+    /// A bumpy mesh.
+    Mesh,
+    /// The same with its inner edges corrected (`FIX_INTERNAL_EDGES`).
+    CorrectedMesh,
+    /// A bumpy height field.
+    HeightField,
+    /// A bumpy compound of boxes.
+    Boxes,
+}
+
+impl Ground {
+    /// Every ground.
+    pub const ALL: [Self; 5] = [
+        Self::Floor,
+        Self::Mesh,
+        Self::CorrectedMesh,
+        Self::HeightField,
+        Self::Boxes,
+    ];
+
+    /// The name on the command line and in tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Floor => "floor",
+            Self::Mesh => "mesh",
+            Self::CorrectedMesh => "corrected-mesh",
+            Self::HeightField => "heightfield",
+            Self::Boxes => "boxes",
+        }
+    }
+
+    /// Adds a square of it around height zero; bumps are about as large as `cell`.
+    pub fn insert(self, world: &mut World, half_width: Real, cell: Real) -> Result<(), String> {
+        match self {
+            Self::Floor => floor(world, half_width),
+            Self::Mesh => bumpy_mesh(world, half_width, cell, TriMeshFlags::empty())?,
+            Self::CorrectedMesh => {
+                bumpy_mesh(world, half_width, cell, TriMeshFlags::FIX_INTERNAL_EDGES)?;
+            }
+            Self::HeightField => bumpy_field(world, half_width, cell),
+            Self::Boxes => bumpy_compound(world, half_width, cell),
+        }
+        Ok(())
+    }
+}
+
+impl FromStr for Ground {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let named = |ground: &Self| ground.name() == text;
+        let unknown = || format!("choose one of {}", Self::ALL.map(Self::name).join(", "));
+        Self::ALL.into_iter().find(named).ok_or_else(unknown)
+    }
+}
+
+/// Triangles about as large as `cell`.
+fn bumpy_mesh(
+    world: &mut World,
+    half_width: Real,
+    cell: Real,
+    flags: TriMeshFlags,
+) -> Result<(), String> {
     let (cells, heights) = bumps(half_width, cell);
     let along = |step: u32| half_width * (2.0 * step as Real / cells as Real - 1.0);
     let corners = (0..=cells).flat_map(|i| (0..=cells).map(move |k| (i, k)));
@@ -84,14 +152,14 @@ pub fn bumpy_mesh(world: &mut World, half_width: Real, cell: Real) -> Result<(),
             triangles.push([corner + 1, next + 1, next]);
         }
     }
-    let mesh = ColliderBuilder::trimesh(points.collect(), triangles)
+    let mesh = ColliderBuilder::trimesh_with_flags(points.collect(), triangles, flags)
         .map_err(|error| format!("the ground is no valid mesh: {error}"))?;
     world.physics.insert_collider(mesh, None);
     Ok(())
 }
 
 /// The same ground as a height field.
-pub fn bumpy_field(world: &mut World, half_width: Real, cell: Real) {
+fn bumpy_field(world: &mut World, half_width: Real, cell: Real) {
     let (cells, heights) = bumps(half_width, cell);
     let corners = cells as usize + 1;
     let heights = Array2::new(corners, corners, heights);
@@ -101,7 +169,7 @@ pub fn bumpy_field(world: &mut World, half_width: Real, cell: Real) {
 }
 
 /// Much the same ground as a compound of boxes, each as high as a corner of a cell.
-pub fn bumpy_compound(world: &mut World, half_width: Real, cell: Real) {
+fn bumpy_compound(world: &mut World, half_width: Real, cell: Real) {
     let (cells, heights) = bumps(half_width, cell);
     let along = |step: u32| half_width * (2.0 * step as Real / cells as Real - 1.0);
     let half = half_width / cells as Real;

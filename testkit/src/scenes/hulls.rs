@@ -134,14 +134,25 @@ pub fn hull(points: &[Vector], origin: &str) -> Result<SharedShape, String> {
 pub fn scaled(shapes: &[SharedShape], size: Real) -> Result<Vec<SharedShape>, String> {
     let extent = |shape: &SharedShape| shape.compute_local_aabb().extents().max_element();
     let largest = shapes.iter().map(extent).fold(0.0, Real::max);
-    let scale = Vector::splat(size / largest);
     shapes
         .iter()
-        .map(|shape| match shape.scale_dyn(scale, 0) {
+        .map(|shape| match scaled_by(size / largest, shape) {
             Some(scaled) => Ok(SharedShape(scaled.into())),
             None => Err(format!("no body of this scene can have a size of {size} m")),
         })
         .collect()
+}
+
+/// A shape scaled with its border, which parry leaves as it is.
+fn scaled_by(factor: Real, shape: &SharedShape) -> Option<Box<dyn Shape>> {
+    let mut scaled = shape.scale_dyn(Vector::splat(factor), 0)?;
+    if let Some(cuboid) = scaled.as_round_cuboid_mut() {
+        cuboid.border_radius *= factor;
+    }
+    if let Some(cylinder) = scaled.as_round_cylinder_mut() {
+        cylinder.border_radius *= factor;
+    }
+    Some(scaled)
 }
 
 /// The shapes with `HullShape`s in the place of plain hulls.

@@ -10,6 +10,7 @@ mod flat;
 mod gripping;
 pub mod hulls;
 mod renewal;
+mod solids;
 mod standing;
 mod world;
 
@@ -20,9 +21,11 @@ use std::str::FromStr;
 use isa_gjk::IsaGjkDispatcher;
 use rapier3d::prelude::{Real, SharedShape};
 
+pub use containers::Ground;
 pub use curved::CurvedScene;
 pub use figures::{Figure, Watched};
 use renewal::Renewal;
+pub use solids::Solid;
 pub use world::World;
 
 /// What happens in a world.
@@ -54,6 +57,8 @@ pub enum Scene {
     Balls,
     /// A pile of balls, cuboids, capsules, cylinders, cones and hulls.
     Mixed,
+    /// A pile of bodies of chosen kinds, in several sizes.
+    Solids,
     /// A pile of bodies made of two hulls each.
     Compound,
     /// Hulls dropped on a bumpy triangle mesh.
@@ -94,7 +99,7 @@ pub enum Scene {
 
 impl Scene {
     /// Every scene.
-    pub const ALL: [Self; 31] = [
+    pub const ALL: [Self; 32] = [
         Self::Drum,
         Self::Pile,
         Self::Stack,
@@ -108,6 +113,7 @@ impl Scene {
         Self::Cuboids,
         Self::Balls,
         Self::Mixed,
+        Self::Solids,
         Self::Compound,
         Self::Trimesh,
         Self::Heightfield,
@@ -144,6 +150,7 @@ impl Scene {
             Self::Cuboids => "cuboids",
             Self::Balls => "balls",
             Self::Mixed => "mixed",
+            Self::Solids => "solids",
             Self::Compound => "compound",
             Self::Trimesh => "trimesh",
             Self::Heightfield => "heightfield",
@@ -170,6 +177,7 @@ impl Scene {
         match self {
             Self::Drum | Self::Mixed => 512,
             Self::Pile | Self::Breach => 400,
+            Self::Solids => 150,
             Self::Rocks
             | Self::Stones
             | Self::Dice
@@ -202,7 +210,12 @@ impl Scene {
     /// The largest extent of a body in metres, of scenes that scale their shapes.
     pub const fn default_size(self) -> Option<f32> {
         match self {
-            Self::Rocks | Self::Stones | Self::Dice | Self::Pencils | Self::Rubble => Some(0.12),
+            Self::Solids
+            | Self::Rocks
+            | Self::Stones
+            | Self::Dice
+            | Self::Pencils
+            | Self::Rubble => Some(0.12),
             Self::Pebbles => Some(0.05),
             Self::Cubes | Self::Grippers | Self::ShakenGrippers => Some(0.1),
             Self::Plates | Self::Needles | Self::Rings => Some(0.4),
@@ -215,7 +228,7 @@ impl Scene {
     /// Which hulls the scene can be filled with.
     pub const fn hulls(self) -> Hulls {
         match self {
-            Self::Cuboids | Self::Balls => Hulls::None,
+            Self::Cuboids | Self::Balls | Self::Solids => Hulls::None,
             Self::Rocks
             | Self::Stones
             | Self::Dice
@@ -334,6 +347,10 @@ pub struct SceneParams {
     pub bodies: u32,
     /// The largest extent of the largest body in metres; `None` leaves the scene's own.
     pub size: Option<Real>,
+    /// The kinds of bodies in [`Scene::Solids`], in turn.
+    pub solids: Vec<Solid>,
+    /// What they fall on.
+    pub ground: Ground,
     /// Of all colliders; `None` leaves rapier's default.
     pub friction: Option<Real>,
     /// Steps per second.
@@ -365,6 +382,8 @@ impl SceneParams {
             hulls,
             bodies,
             size: None,
+            solids: Solid::ALL.to_vec(),
+            ground: Ground::default(),
             friction: None,
             hz: 60,
             seed: 1,
@@ -373,6 +392,24 @@ impl SceneParams {
             unchanged_shapes: false,
             own_shapes: false,
             can_sleep: true,
+        }
+    }
+}
+
+impl SceneParams {
+    /// What there is in `scene`, in words.
+    pub fn contents(&self, scene: Scene) -> String {
+        let solids = || self.solids.iter().map(|solid| solid.name());
+        match scene.hulls() {
+            Hulls::None if scene == Scene::Solids => {
+                format!(
+                    "{} on {}",
+                    solids().collect::<Vec<_>>().join(", "),
+                    self.ground.name()
+                )
+            }
+            Hulls::None => "no hulls".to_owned(),
+            _ => self.hulls.to_string(),
         }
     }
 }
