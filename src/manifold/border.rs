@@ -80,8 +80,11 @@ impl<S: Polytope> Border<'_, S> {
         }
         let mut rows = points.map(f32x4::to_array);
         let point = Vec3::from(rows.map(|row| row[lane])).as_dvec3();
-        let face = feature.face(self.core, self.normal);
-        let lift = self.height_over(face, point) - self.width;
+        let height = match self.core.height_of_border(point, self.normal, self.width) {
+            Some(height) => height,
+            None => self.height_over(feature.face(self.core, self.normal), point),
+        };
+        let lift = height - self.width;
         if lift <= 0.0 {
             return 0.0;
         }

@@ -133,6 +133,33 @@ impl Polytope for CuboidPolytope {
         Some(insets.min_element())
     }
 
+    /// On its way, the line passes the planes of up to three faces. Between two of these planes, its distance from the
+    /// box is that from the faces that it has passed.
+    fn height_of_border(&self, point: DVec3, dir: DVec3, width: f64) -> Option<f64> {
+        let mut passed = [0, 1, 2].map(|k| {
+            let height = (self.half_extents[k] - point[k] * dir[k].signum()) / dir[k].abs();
+            (height.max(0.0), dir[k] * dir[k])
+        });
+        passed.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let ends = [passed[1].0, passed[2].0, f64::INFINITY];
+        // At a height, half the slope of the squared distance, and that distance; and half the slope's slope.
+        let (mut slope, mut squared, mut bend) = (0.0, 0.0, 0.0);
+        let mut height = passed[0].0;
+        for ((_, share), end) in passed.into_iter().zip(ends) {
+            bend += share;
+            let missing = width * width - squared;
+            let way = missing / (slope + (slope * slope + bend * missing).sqrt());
+            if height + way <= end {
+                return Some(height + way);
+            }
+            let step = end - height;
+            squared += step * (2.0 * slope + step * bend);
+            slope += step * bend;
+            height = end;
+        }
+        None
+    }
+
     #[inline]
     fn face_corners(&self, face: FaceId) -> impl FaceCorners {
         (self, face)
@@ -181,6 +208,43 @@ impl Polytope for CuboidPolytope {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_border_ends_where_it_is_as_far_away_as_wide() {
+        let half = DVec3::new(1.0, 0.3, 2.0);
+        let cuboid = CuboidPolytope::new(half);
+        let mut rng = oorandom::Rand64::new(7);
+        let mut within = || {
+            let mut number = || 2.0 * rng.rand_float() - 1.0;
+            DVec3::new(number(), number(), number())
+        };
+        for round in 0..3000 {
+            let mut point = within() * half;
+            for k in 0..round % 4 {
+                point[k] = half[k].copysign(point[k]);
+            }
+            let mut dir = within();
+            for k in 0..round / 4 % 3 {
+                dir[k] *= if round % 5 == 0 { 0.0 } else { 1e-9 };
+            }
+            let dir = dir.normalize();
+            let width = 10.0_f64.powi(-(round as i32 % 6));
+            let height = cuboid
+                .height_of_border(point, dir, width)
+                .expect("a border");
+            let outside = |height: f64| {
+                ((point + dir * height).abs() - half)
+                    .max(DVec3::ZERO)
+                    .length()
+            };
+            assert!(
+                (outside(height) - width).abs() < 1e-12,
+                "{point} {dir} {width}: {height}"
+            );
+            // On its way out, the distance does not fall.
+            assert!(outside(height - 1e-3 * width) < width);
+        }
+    }
 
     #[test]
     fn faces_turn_counter_clockwise_on_their_planes() {

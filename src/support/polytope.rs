@@ -57,6 +57,12 @@ pub trait Polytope: Support {
         None
     }
 
+    /// How far a line from a point of the shape goes along a unit vector until it is `width` away from the shape, if
+    /// this costs less than a look at its faces.
+    fn height_of_border(&self, _point: DVec3, _dir: DVec3, _width: f64) -> Option<f64> {
+        None
+    }
+
     /// The planes of all faces, if they are at hand.
     fn face_planes(&self) -> Option<&FacePlanes> {
         None
