@@ -5,7 +5,9 @@
 
 use glam::DVec3;
 
-use crate::primitive::{common_stretch, middle_direction, nearest_share, stretch_beside};
+use crate::primitive::{
+    common_stretch, exit_from_capsule, middle_direction, nearest_share, stretch_beside,
+};
 use crate::tolerance::{CAPSULE_TOUCH, SAME_GAP};
 use crate::tuning::SHORT_LINE;
 
@@ -77,6 +79,11 @@ impl CapsuleContacts {
 }
 
 impl Capsule {
+    /// How far the line from `p` along a unit vector goes until it leaves the capsule; `None` if it misses it.
+    fn exit(&self, p: DVec3, dir: DVec3) -> Option<f64> {
+        exit_from_capsule([self.a, self.b], self.radius, p, dir)
+    }
+
     fn axis(&self) -> DVec3 {
         self.b - self.a
     }
@@ -89,32 +96,6 @@ impl Capsule {
     fn nearest_share(&self, p: DVec3) -> f64 {
         nearest_share([self.a, self.b], p)
     }
-
-    /// The distance along the unit vector `dir` at which the line through `p` leaves the capsule; `None` if
-    /// the line misses it.
-    fn exit(&self, p: DVec3, dir: DVec3) -> Option<f64> {
-        let axis = self.axis();
-        let length = axis.length();
-        let along = axis.normalize_or_zero();
-        let across = |v: DVec3| v - along * v.dot(along);
-        let from_axis = across(p - self.a);
-        let step = across(dir);
-        let t = larger_root(step, from_axis, self.radius)?;
-        let place = (p + dir * t - self.a).dot(along);
-        if (0.0..=length).contains(&place) {
-            return Some(t);
-        }
-        // Beyond the side, the line leaves through a round end.
-        let end = if place < 0.0 { self.a } else { self.b };
-        larger_root(dir, p - end, self.radius)
-    }
-}
-
-/// The larger `t` with `|from + step t| = radius`.
-fn larger_root(step: DVec3, from: DVec3, radius: f64) -> Option<f64> {
-    let (a, b) = (step.length_squared(), step.dot(from));
-    let discriminant = b * b - a * (from.length_squared() - radius * radius);
-    (a > 0.0 && discriminant >= 0.0).then(|| (discriminant.sqrt() - b) / a)
 }
 
 /// The nearest points of the cores (Ericson, *Real-Time Collision Detection*, 5.1.9). If the axes are nearly

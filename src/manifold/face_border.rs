@@ -3,6 +3,7 @@
 
 use glam::DVec3;
 
+use crate::primitive::exit_from_ball;
 use crate::tuning::EDGE_ON;
 
 /// The border around a face of a core. `sides` are the ends of its sides, counter-clockwise seen from outside.
@@ -83,7 +84,7 @@ impl<I: Iterator<Item = [DVec3; 2]> + Clone> FaceBorder<I> {
             let next = if i + 1 < count { i + 1 } else { 0 };
             let ends = ends.map(|end| end - point);
             let [first, last] =
-                ends.map(|end| last_crossing(end, normal, self.width).unwrap_or(0.0));
+                ends.map(|end| exit_from_ball(normal, -end, self.width).unwrap_or(0.0));
             let cylinder = self.cylinder_over_origin(ends, normal);
             for (height, nearest) in [
                 (first, NearestPart::Corner(i)),
@@ -104,7 +105,7 @@ impl<I: Iterator<Item = [DVec3; 2]> + Clone> FaceBorder<I> {
         let along = to - from;
         let length_squared = along.length_squared();
         let across = |v: DVec3| v - along * (v.dot(along) / length_squared);
-        let height = last_crossing(across(from), across(normal), self.width);
+        let height = exit_from_ball(across(normal), -across(from), self.width);
         height
             .filter(|height| {
                 let share = (normal * *height - from).dot(along);
@@ -112,12 +113,4 @@ impl<I: Iterator<Item = [DVec3; 2]> + Clone> FaceBorder<I> {
             })
             .unwrap_or(0.0)
     }
-}
-
-/// The greatest `t` at which `t * way` is at this distance from a point.
-fn last_crossing(from: DVec3, way: DVec3, distance: f64) -> Option<f64> {
-    let (squared, nearest) = (way.length_squared(), from.dot(way));
-    let rest = nearest * nearest - squared * (from.length_squared() - distance * distance);
-    let crossing = (nearest + rest.sqrt()) / squared;
-    crossing.is_finite().then_some(crossing)
 }

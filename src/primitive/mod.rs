@@ -25,7 +25,7 @@ pub(crate) use outline::Revolved;
 pub(crate) use point::Point;
 pub(crate) use rolling::{turn_about, turns};
 pub use segment::Segment;
-pub(crate) use segment::nearest_share;
+pub(crate) use segment::{exit_from_ball, exit_from_capsule, nearest_share};
 pub use triangle::TrianglePolytope;
 
 use glam::Vec3;

@@ -42,6 +42,34 @@ pub(crate) fn nearest_share([a, b]: [DVec3; 2], p: DVec3) -> f64 {
     }
 }
 
+/// How far a line from `p` along the unit vector `dir` goes until it leaves the capsule around a segment; `None` if it
+/// misses it, or is parallel to the segment.
+pub(crate) fn exit_from_capsule(
+    [a, b]: [DVec3; 2],
+    radius: f64,
+    p: DVec3,
+    dir: DVec3,
+) -> Option<f64> {
+    let length = a.distance(b);
+    let along = (b - a).normalize_or_zero();
+    let across = |v: DVec3| v - along * v.dot(along);
+    let t = exit_from_ball(across(dir), across(p - a), radius)?;
+    let place = (p + dir * t - a).dot(along);
+    if (0.0..=length).contains(&place) {
+        return Some(t);
+    }
+    // Beyond the side, the line leaves through a round end.
+    let end = if place < 0.0 { a } else { b };
+    exit_from_ball(dir, p - end, radius)
+}
+
+/// The larger `t` at which `from + way * t` is at this distance from the origin.
+pub(crate) fn exit_from_ball(way: DVec3, from: DVec3, radius: f64) -> Option<f64> {
+    let (a, b) = (way.length_squared(), way.dot(from));
+    let discriminant = b * b - a * (from.length_squared() - radius * radius);
+    (a > 0.0 && discriminant >= 0.0).then(|| (discriminant.sqrt() - b) / a)
+}
+
 impl Support for Segment {
     #[inline]
     fn support(&self, dir: DVec3, start: VertexId, cost: &mut Cost) -> (DVec3, VertexId) {
@@ -121,6 +149,10 @@ impl Polytope for Segment {
     #[inline]
     fn face_vertex(&self, _: FaceId, i: usize) -> VertexId {
         VertexId::new(i)
+    }
+
+    fn height_of_border(&self, point: DVec3, dir: DVec3, width: f64) -> Option<f64> {
+        exit_from_capsule(self.ends, width, point, dir)
     }
 
     #[inline]

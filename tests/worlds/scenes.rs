@@ -127,6 +127,8 @@ fn settled(scene: Scene) -> Option<Settled> {
         Scene::Breach => (0.2, 0.05),
         // Held in the air, 0.2 m above the floor, by fingers of 2 cm.
         Scene::Grippers | Scene::ShakenGrippers => (0.3, 0.18),
+        // Coins of a centimetre give way by a millimetre or two.
+        Scene::Solids => (0.3, 0.02),
         // A quarter of what a body measures. Small stones, a few centimetres thick, sink into each other by
         // some millimetres, as soft contacts let them.
         Scene::Dice | Scene::Rocks | Scene::Pebbles => {
