@@ -14,8 +14,7 @@ use testkit::scenes::{self, Scene, SceneParams, World};
 
 /// Of so many bodies all but one must sleep.
 const ONE_AWAKE_OF: usize = 20;
-/// Later than this many times the default's frame of rest, and so many frames more, is late: two runs that begin within a
-/// rounding of each other differ by less.
+/// Ours keep the limit if they rest no later than this many times the default's frame of rest and so many frames more.
 const LIMIT_FACTOR: f64 = 1.25;
 const LIMIT_FRAMES: f64 = 30.0;
 
@@ -160,8 +159,7 @@ impl Rest {
 }
 
 impl Run {
-    /// Whether ours rested no later than 1.25 times the default's frame plus 30; who never rested counts as having
-    /// rested in the last frame.
+    /// Whether ours rested no later than the limit. Who never rested counts as having rested in the last frame.
     fn keeps_limit(&self, frames: usize) -> bool {
         let [default, ours] = [&self.default, &self.ours].map(|side| side.rest.unwrap_or(frames));
         ours as f64 <= LIMIT_FACTOR * default as f64 + LIMIT_FRAMES

@@ -399,14 +399,10 @@ impl SceneParams {
 impl SceneParams {
     /// What there is in `scene`, in words.
     pub fn contents(&self, scene: Scene) -> String {
-        let solids = || self.solids.iter().map(|solid| solid.name());
         match scene.hulls() {
             Hulls::None if scene == Scene::Solids => {
-                format!(
-                    "{} on {}",
-                    solids().collect::<Vec<_>>().join(", "),
-                    self.ground.name()
-                )
+                let solids: Vec<_> = self.solids.iter().map(|solid| solid.name()).collect();
+                format!("{} on {}", solids.join(", "), self.ground.name())
             }
             Hulls::None => "no hulls".to_owned(),
             _ => self.hulls.to_string(),
