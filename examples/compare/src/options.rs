@@ -27,7 +27,7 @@ pub struct Options {
     /// Kinds of bodies in the scene solids, which take turns: ball, cuboid, rounded-cuboid, capsule,
     /// cylinder, rounded-cylinder, log, coin, cone or hull [default: all of them]
     #[arg(long, value_delimiter = ',')]
-    solids: Vec<Solid>,
+    solids: Option<Vec<Solid>>,
 
     /// What they fall on: floor, mesh, corrected-mesh (with FIX_INTERNAL_EDGES), heightfield or boxes (one compound)
     #[arg(long, default_value = Ground::Floor.name())]
@@ -202,8 +202,7 @@ impl Options {
     /// What to build, of hulls with so many vertices.
     pub fn scene_params(&self, vertices: u32) -> Result<SceneParams, String> {
         let hulls = self.hull_source(vertices)?;
-        if self.scene != Scene::Solids && (!self.solids.is_empty() || self.ground != Ground::Floor)
-        {
+        if self.scene != Scene::Solids && (self.solids.is_some() || self.ground != Ground::Floor) {
             return Err(
                 "--solids and --ground are for piles of solids: add --scene solids".to_owned(),
             );
@@ -213,7 +212,7 @@ impl Options {
         Ok(SceneParams {
             distinct: self.distinct.unwrap_or(params.distinct),
             size: self.size,
-            solids: self.solids(),
+            solids: self.solids.clone().unwrap_or(params.solids),
             ground: self.ground,
             friction: self.friction,
             hz: self.hz,
@@ -225,14 +224,6 @@ impl Options {
             can_sleep: self.sleep || self.until_asleep || self.scene == Scene::Asleep,
             ..params
         })
-    }
-
-    fn solids(&self) -> Vec<Solid> {
-        if self.solids.is_empty() {
-            Solid::ALL.to_vec()
-        } else {
-            self.solids.clone()
-        }
     }
 
     /// The scenes of `--curved`.

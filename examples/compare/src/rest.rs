@@ -75,6 +75,7 @@ pub struct Side {
 /// One frame of a world.
 pub struct Frame {
     step_ms: f64,
+    narrow_phase_ms: f64,
     /// Bodies that do not sleep.
     pub awake: usize,
 }
@@ -98,6 +99,7 @@ impl Rest {
                 Run::new(scene, &params, frames, progress)
             })
             .collect::<Result<Vec<_>, _>>()?;
+        let median = |of: fn(&Run) -> f64| quantile(runs.iter().map(of).collect(), 0.5);
         Ok(Self {
             scene: scene.name(),
             hulls: params.contents(scene),
@@ -108,11 +110,8 @@ impl Rest {
             recycling: params.recycling,
             hull_shape: params.hull_shape,
             frames,
-            ratio: quantile(runs.iter().map(|run| run.ratio).collect(), 0.5),
-            narrow_phase_ratio: {
-                let ratios = runs.iter().map(Run::narrow_phase_ratio);
-                quantile(ratios.collect(), 0.5)
-            },
+            ratio: median(|run| run.ratio),
+            narrow_phase_ratio: median(Run::narrow_phase_ratio),
             kept: runs.iter().filter(|run| run.keeps_limit(frames)).count(),
             runs,
         })
@@ -199,7 +198,6 @@ struct Watch {
     world: World,
     bodies: usize,
     frames: Vec<Frame>,
-    narrow_phase_ms: f64,
     /// Since when at most one of twenty is awake, and where the bodies were then.
     rest: Option<(usize, Vec<Vector>)>,
 }
@@ -210,7 +208,6 @@ impl Watch {
             bodies: world.dynamic_bodies().count(),
             world,
             frames: Vec::new(),
-            narrow_phase_ms: 0.0,
             rest: None,
         }
     }
@@ -220,9 +217,9 @@ impl Watch {
         let counters = &self.world.physics.physics_pipeline.counters;
         let awake = self.bodies - self.world.sleeping();
         let frame = self.frames.len();
-        self.narrow_phase_ms += counters.narrow_phase_time_ms();
         self.frames.push(Frame {
             step_ms: counters.step_time_ms(),
+            narrow_phase_ms: counters.narrow_phase_time_ms(),
             awake,
         });
         if awake * ONE_AWAKE_OF > self.bodies {
@@ -246,10 +243,11 @@ impl Watch {
                 .map(|(now, then)| now.distance(*then));
             1e3 * f64::from(ways.fold(0.0, f32::max))
         });
+        let sum = |of: fn(&Frame) -> f64| self.frames.iter().map(of).sum();
         Side {
             rest: self.rest.as_ref().map(|(frame, _)| *frame),
-            steps_ms: self.frames.iter().map(|frame| frame.step_ms).sum(),
-            narrow_phase_ms: self.narrow_phase_ms,
+            steps_ms: sum(|frame| frame.step_ms),
+            narrow_phase_ms: sum(|frame| frame.narrow_phase_ms),
             drift_mm: drift,
             asleep: self.world.sleeping(),
             frames: self.frames,

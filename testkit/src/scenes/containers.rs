@@ -6,8 +6,8 @@ use std::str::FromStr;
 use parry3d::utils::Array2;
 use rapier3d::prelude::*;
 
-use super::hulls;
 use super::world::World;
+use super::{hulls, named};
 
 /// Thick enough that nothing tunnels through it in a frame.
 pub const WALL: Real = 1.0;
@@ -125,9 +125,7 @@ impl FromStr for Ground {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let named = |ground: &Self| ground.name() == text;
-        let unknown = || format!("choose one of {}", Self::ALL.map(Self::name).join(", "));
-        Self::ALL.into_iter().find(named).ok_or_else(unknown)
+        named(text, Self::ALL, Self::name)
     }
 }
 

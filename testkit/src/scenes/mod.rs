@@ -276,11 +276,18 @@ impl FromStr for Scene {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        Self::ALL
-            .into_iter()
-            .find(|scene| scene.name() == text)
-            .ok_or_else(|| format!("choose one of {}", Self::ALL.map(Self::name).join(", ")))
+        named(text, Self::ALL, Self::name)
     }
+}
+
+/// The one of `all` with this name.
+fn named<T: Copy, const N: usize>(
+    text: &str,
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> Result<T, String> {
+    let found = all.into_iter().find(|&one| name(one) == text);
+    found.ok_or_else(|| format!("choose one of {}", all.map(name).join(", ")))
 }
 
 /// Which hulls a scene can be filled with.

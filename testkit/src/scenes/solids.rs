@@ -5,7 +5,7 @@ use std::str::FromStr;
 use oorandom::Rand32;
 use rapier3d::prelude::*;
 
-use super::hulls;
+use super::{hulls, named};
 
 /// The smallest body over the largest.
 const SMALLEST: Real = 0.4;
@@ -111,8 +111,6 @@ impl FromStr for Solid {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let named = |solid: &Self| solid.name() == text;
-        let unknown = || format!("choose among {}", Self::ALL.map(Self::name).join(", "));
-        Self::ALL.into_iter().find(named).ok_or_else(unknown)
+        named(text, Self::ALL, Self::name)
     }
 }
